@@ -37,6 +37,7 @@ from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.projection import ProjectedTables
@@ -77,7 +78,7 @@ class Services(LoginServices):
     reports: ReportProcess | None = None  # None: a station that only replays
     # None: a station without a log.
     read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
-    log: LogFeed | None = None  # None: a station without a log
+    log_of: Callable[[IncidentRow], LogFeed] | None = None  # None: a station without a log
     alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
     radio: RadioLog | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols no units

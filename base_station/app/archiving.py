@@ -1,4 +1,4 @@
-"""Archive of a live station: copies incidents into it, and finds them there."""
+"""Archive of a live station: copies incidents into it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from base_station.app.resources import Resources
 from base_station.archive.automatic import ArchivingContext, AutomaticArchive
-from base_station.archive.finding import ArchivedLogs
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.db.archived import ArchivedCopies
 
@@ -27,10 +26,3 @@ def automatic_archive(
         leads=leads,
     )
     return AutomaticArchive(config, place, ArchivedCopies(disk.store), disk.clock)
-
-
-def archived_logs(resources: Resources) -> ArchivedLogs:
-    disk = resources.disk
-    return ArchivedLogs(
-        ArchivedCopies(disk.store), resources.recorder.segments, disk.known_segments
-    )

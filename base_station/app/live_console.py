@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.server import ConsoleServer
 from base_station.api.services import Services
-from base_station.app.archiving import archived_logs
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.app.station_storage import StationStorage
 from base_station.dispatch.alert_intake import AlertIntake
 from base_station.engine.feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
@@ -19,12 +19,14 @@ from base_station.radio.radio_log import RadioLog
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
-from base_station.report.alarm_explanation import AlarmExplainer
+from base_station.report.alarm_explanation import AlarmExplainer, ReadLog
 from base_station.report.process import ReportProcess
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.imports import ImportFolder
+from shared.mcap_log import LogRecord
 
 
 def new_services(parts: LiveParts) -> Services:
@@ -43,7 +45,7 @@ def new_services(parts: LiveParts) -> Services:
             replay_process_starter(
                 _replay_context(parts),
                 disk.clock.utc_ns,
-                archived_logs(resources).instead_of_log,
+                disk.archived_logs.instead_of_log,
             )
         ),
         archived=ArchivedCopies(disk.store),
@@ -55,8 +57,8 @@ def new_services(parts: LiveParts) -> Services:
         post_processor=parts.post_processor,
         reports=ReportProcess(log_process),
         read_timeline=TimelineProcess(log_process).read,
-        log=_log_feed(parts),
-        alarm_explainer=AlarmExplainer(disk.records, _log_feed(parts).records),
+        log_of=_log_of_incident(disk),
+        alarm_explainer=AlarmExplainer(disk.records, _past_log(disk)),
         plans=parts.plans,
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
@@ -91,12 +93,23 @@ def _log_process(parts: LiveParts) -> LogProcess:
         prepare=disk.recorder.flush,
         note_damage=disk.check.recheck,
         known_segments=disk.known_segments,
+        instead_of_log=disk.archived_logs.instead_of_log,
+        archived_parts=disk.archived_logs.parts,
     )
 
 
-def _log_feed(parts: LiveParts) -> LogFeed:
-    disk = parts.resources.disk
-    return LogFeed(disk.folder.log, disk.recorder.flush, disk.check.recheck)
+def _past_log(disk: StationStorage) -> ReadLog:
+    """The log of some time, wherever it is."""
+
+    def read(from_ns: int, until_ns: int, keys: Collection[str]) -> Iterable[LogRecord]:
+        return disk.archived_logs.feed(disk.log, from_ns, until_ns).records(from_ns, until_ns, keys)
+
+    return read
+
+
+def _log_of_incident(disk: StationStorage) -> Callable[[IncidentRow], LogFeed]:
+    """The log of an incident, wherever it is."""
+    return lambda incident: disk.archived_logs.feed_of(incident) or disk.log
 
 
 def _replay_context(parts: LiveParts) -> ReplayContext:

@@ -15,6 +15,8 @@ from tempfile import TemporaryDirectory
 
 from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.archive.finding import ArchivedLogs
+from base_station.archive.partly_archived import opened_copy
 from base_station.engine.feed import LogFeed
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import read_incident_file
@@ -22,6 +24,7 @@ from base_station.replay.playback import Archive
 from base_station.replay.version_check import DIFFERS, decisions_differ
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.copying import copy_database
 from base_station.storage.db.database import Database
 from base_station.storage.db.opening import open_database
@@ -31,7 +34,7 @@ from base_station.storage.db.salvage import damage_of
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
-from base_station.storage.log_defects import LogDefects
+from base_station.storage.log_defects import LogDefects, being_written
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
 from shared.errors import DatabaseAwayError, LogError, UserError
@@ -115,7 +118,9 @@ def open_offline_log(
     elif server is not None or (in_place and _is_writable(folder)):
         store = _opened(folder, closing, report)
         if store is not None and not _lacks_incident(store, folder, incident_id):
-            log, defects = _open_log(folder, store, left_out, report, decides_again=decides_again)
+            log, defects = _archived_log(folder, store, incident_id, report) or _open_log(
+                folder, store, left_out, report, decides_again=decides_again
+            )
             return OfflineLog(
                 folder,
                 store,
@@ -131,7 +136,9 @@ def open_offline_log(
     if not damage and server is None:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
-    log, defects = _open_log(folder, store, left_out, report, decides_again=decides_again)
+    log, defects = _archived_log(folder, store, incident_id, report) or _open_log(
+        folder, store, left_out, report, decides_again=decides_again
+    )
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
@@ -169,6 +176,30 @@ def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database 
     except DatabaseAwayError as error:
         report(f"{error}; the log is read instead")
         return None
+
+
+def _archived_log(
+    folder: DataFolder, store: Database, incident_id: str, report: Report
+) -> tuple[LogFeed, LogDefects] | None:
+    """The copy of an incident whose log is not here any more; None: it is, or there is no copy.
+
+    Raises ArchiveError where the archive does not answer.
+    """
+    records = Records(store, SystemClock())
+    incident = records.incident(incident_id)
+    if incident is None:
+        return None
+    archived = ArchivedLogs(
+        ArchivedCopies(store),
+        records,
+        segments=lambda: map(being_written, own_segments(folder.log)[0]),
+        known=lambda: known_segments_of(records),
+    ).instead_of_log(incident)
+    if archived is None:
+        return None
+    report(f"the log of {incident_id} is not here any more: it is read in {archived.location}")
+    defects = LogDefects(Path(incident_id), on_defect=report)
+    return opened_copy(archived, defects), defects
 
 
 def _open_log(

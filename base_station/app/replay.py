@@ -98,7 +98,7 @@ def run_replay_station(
             is_replay_only=True,
             post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
-            log=offline_log.log,
+            log_of=lambda _: offline_log.log,
             radio=offline_log.radio,
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
             archived=ArchivedCopies(store),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
@@ -9,8 +10,7 @@ import msgspec
 from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.copying import ArchiveCopier
-from base_station.archive.entry import decoded_entry
-from base_station.archive.feed import ArchivedFeed
+from base_station.archive.partly_archived import here_or_lost, opened_copy, partly_archived
 from base_station.archive.store import open_store
 from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
@@ -73,11 +73,8 @@ def work(line: FrameChannel) -> None:
         if flaws.note_damage(what):
             line.send(Damage(what))
 
-    log = LogFeed(Path(job.log), on_damage=note_damage)
+    log = _log_of(job, flaws, note_damage)
     match job:
-        case ReplayJob(archived=ArchivedLog() as archived):
-            feed = _archived_feed(archived, flaws)
-            replay(job, _archive(job, feed, flaws), SystemClock(), line)
         case ReplayJob():
             replay(job, _archive(job, log, flaws), SystemClock(), line)
         case PostProcessingJob():
@@ -92,12 +89,18 @@ def work(line: FrameChannel) -> None:
             _copy_incidents(job, log, line)
 
 
-def _archived_feed(archived: ArchivedLog, flaws: LogDefects) -> ArchivedFeed:
-    entry, store = decoded_entry(archived.entry, archived.location), open_store(archived.location)
-    for words in entry.damage:
-        flaws.note(words)
-    files = {one.name: one for one in entry.files}
-    return ArchivedFeed(store, entry.incident_id, files, entry.log_id, flaws.note_damage)
+def _log_of(job: Job, flaws: LogDefects, note_damage: Callable[[str], None]) -> LogFeed:
+    match job:
+        case (
+            ReplayJob(archived=ArchivedLog() as archived)
+            | PostProcessingJob(archived=ArchivedLog() as archived)
+            | ReportJob(archived=ArchivedLog() as archived)
+        ):
+            return opened_copy(archived, flaws)
+    own = LogFeed(Path(job.log), on_damage=note_damage)
+    if isinstance(job, TimelineJob) and job.archived:
+        return partly_archived(own, job.archived, flaws)
+    return own
 
 
 def _archive(
@@ -118,7 +121,7 @@ def _archive(
 def _flaws_of(job: Job) -> LogDefects:
     log = Path(job.log)
     match job:
-        case ReplayJob(archived=ArchivedLog()):
+        case ReplayJob() | PostProcessingJob() | ReportJob() if job.archived is not None:
             return LogDefects(Path(job.incident_id))  # no folder of this machine
         case ArchiveJob():
             return LogDefects(log, (), is_written=True)
@@ -137,7 +140,7 @@ def _flaws_of(job: Job) -> LogDefects:
         case TimelineJob():
             return LogDefects(
                 log,
-                job.known_segments,
+                here_or_lost(job.known_segments, job.archived),
                 is_written=True,
                 from_ns=job.from_ns,
                 until_ns=job.until_ns,

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from base_station.app.factories import Announce, project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.archive.finding import ArchivedLogs
 from base_station.engine.feed import LogFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.fusion.smoothing import SMOOTHERS
@@ -24,6 +25,7 @@ from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.checkpoints import Checkpoints, SavedState
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.database import Database
 from base_station.storage.db.opening import open_live_server, require_noted_server
 from base_station.storage.db.projection import SqlProjection
@@ -74,6 +76,12 @@ class StationStorage:
     def archive(self) -> Archive:
         return Archive(self.log.records, self.checkpoints, past_pipeline, self.log.watch)
 
+    @property
+    def archived_logs(self) -> ArchivedLogs:
+        """Copies of incidents whose log is not here any more."""
+        copies = ArchivedCopies(self.store)
+        return ArchivedLogs(copies, self.records, self.recorder.segments, self.known_segments)
+
     def latest_state(self) -> SavedState | None:
         """Checkpoint to go on from: also one whose place in the log was lost since.  It has the
         actions and messages until then, so that the lost ones are known to be missing.
@@ -109,6 +117,7 @@ class StationStorage:
             prepare=self.recorder.flush,
             note_damage=self.check.recheck,
             known_segments=self.known_segments,
+            instead_of_log=self.archived_logs.instead_of_log,
         )
         kept = SmoothedTracks(self.store)
         return PostProcessingProcess(place, self.archive, SMOOTHERS[0], kept, self.clock)

@@ -9,7 +9,13 @@ from base_station.archive.entry import CONSOLE_NAME, LOG_NAME, name_in_archive
 from base_station.archive.store import ArchiveStore
 from base_station.engine.feed import LogFeed
 from base_station.storage.db.archived import ArchivedFile
-from shared.mcap_log import LogRecord, RangedSegmentFile, SegmentReader, is_console
+from shared.mcap_log import (
+    LogRecord,
+    RangedSegmentFile,
+    SegmentReader,
+    channel_of_audio,
+    is_console,
+)
 
 
 class ArchivedFeed(LogFeed):
@@ -52,7 +58,9 @@ class ArchivedFeed(LogFeed):
     ) -> Iterator[LogRecord]:
         is_of_console = isinstance(topics, set | frozenset) and all(map(is_console, topics))
         file = self._console if is_of_console else self._whole
-        return self._read(file, start_ns, end_ns, topics, derived=topics is not None)
+        found = self._read(file, start_ns, end_ns, topics, derived=topics is not None)
+        # As in a station's log: audio of the radio has its own (``ArchivedRadio``).
+        return (record for record in found if channel_of_audio(record[1]) is None)
 
     def watch(self) -> Callable[[], bool]:
         """A copy is never changed: it is replaced."""

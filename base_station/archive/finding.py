@@ -1,18 +1,28 @@
-"""Finds the copy of an incident whose log the station has no more."""
+"""Finds the copies of incidents whose log the station has no more."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+import msgspec
+
 from base_station.archive.entry import ENTRY_NAME, decoded_entry, name_in_archive
+from base_station.archive.partly_archived import opened_copy, partly_archived
 from base_station.archive.store import open_store
-from base_station.replay.processes.wire import ArchivedLog
+from base_station.engine.feed import LogFeed
+from base_station.replay.incident_file import AFTER_NS
+from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import IncidentRow
+from base_station.storage.db.records import Records
+from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.missing_segments import KnownSegment
+from shared.clock import NS_PER_S
 from shared.errors import ArchiveError
 from shared.mcap_log import SegmentInfo
+
+LATE_NS = 3600 * NS_PER_S  # so long after its closing a timeline asks for what journals brought
 
 
 @dataclass(frozen=True)
@@ -20,6 +30,7 @@ class ArchivedLogs:
     """From any thread."""
 
     copies: ArchivedCopies
+    records: Records
     segments: Callable[[], Iterable[SegmentInfo]]  # that are here
     known: Callable[[], Iterable[KnownSegment]]  # that there were, by the database
 
@@ -45,16 +56,50 @@ class ArchivedLogs:
         decoded_entry(encoded, f"{location}: {name}")
         return ArchivedLog(location, encoded)
 
+    def feed_of(self, incident: IncidentRow) -> LogFeed | None:
+        """None: as above.  Raises ArchiveError."""
+        archived = self.instead_of_log(incident)
+        return None if archived is None else opened_copy(archived)
+
+    def feed(self, own: LogFeed, from_ns: int, until_ns: int) -> LogFeed:
+        """The station's log between two times, wherever it is.  Raises ArchiveError."""
+        parts = self.parts(from_ns, until_ns)
+        return partly_archived(own, parts) if parts else own
+
+    def parts(self, from_ns: int, until_ns: int) -> tuple[ArchivedPart, ...]:
+        """Incidents between two station times whose log is not here, and of which an archive has a
+        copy; the oldest first.  With what journals brought later, where that is not here either.
+
+        Raises ArchiveError where the archive does not answer.
+        """
+        if self._is_here(from_ns, until_ns):
+            return ()
+        found = list[ArchivedPart]()
+        closed = [one for one in self.records.incidents() if one.closed_ns is not None]
+        for incident in sorted(closed, key=lambda one: one.opened_ns):
+            closed_ns = incident.closed_ns or 0
+            if incident.opened_ns >= until_ns or closed_ns + LATE_NS <= from_ns:
+                continue
+            archived = self.instead_of_log(incident)
+            if archived is not None:
+                end_ns = closed_ns + AFTER_NS
+                if not self._is_here(end_ns, closed_ns + LATE_NS):
+                    end_ns = closed_ns + LATE_NS
+                found.append(ArchivedPart(incident.opened_ns, end_ns, archived))
+        following_ns = [one.from_ns for one in found[1:]]
+        return tuple(
+            msgspec.structs.replace(one, until_ns=min(one.until_ns, next_ns))
+            for one, next_ns in zip(found, [*following_ns, FOREVER_NS], strict=True)
+        )
+
     def _is_here(self, from_ns: int, until_ns: int) -> bool:
-        """All segments that have something of the time, of which there is one at least."""
-        here = {
-            one.path.name
-            for one in self.segments()
-            if one.start_ns <= until_ns and one.end_ns >= from_ns
-        }
+        """All segments that have something of the time; where the database knows of none, one."""
+        here = {one.path.name: one for one in self.segments()}
         there_were = {
             one.name
             for one in self.known()
             if one.messages and one.first_ns <= until_ns and one.last_ns >= from_ns
         }
-        return bool(here) and there_were <= here
+        if there_were:
+            return there_were <= here.keys()
+        return any(one.start_ns <= until_ns and one.end_ns >= from_ns for one in here.values())

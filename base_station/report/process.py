@@ -16,7 +16,9 @@ class ReportProcess:
     log_process: LogProcess
 
     def make(self, incident: IncidentRow, *, as_pdf: bool) -> bytes:
-        """HTML, or PDF.  Raises StoreError with the reason where it cannot be made."""
+        """HTML, or PDF.  Raises StoreError with the reason where it cannot be made, ArchiveError
+        where the log is in an archive that does not answer.
+        """
         job = wire.ReportJob(
             log=self.log_process.log,
             database=self.log_process.database,
@@ -25,5 +27,6 @@ class ReportProcess:
             closed_ns=incident.closed_ns,
             as_pdf=as_pdf,
             known_segments=tuple(self.log_process.known_segments()),
+            archived=self.log_process.instead_of_log(incident),
         )
         return self.log_process.ask(job, wire.read_report_result).content

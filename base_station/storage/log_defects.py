@@ -79,7 +79,7 @@ class LogDefects:
             written = own[-1:] if self._is_written else []
             self._segments = [_info_of(path) for path in own if path not in written]
             lacks = log_gaps(
-                [*self._segments, *map(_being_written, written)],
+                [*self._segments, *map(being_written, written)],
                 [one for one in self._known if not self._is_behind(one.first_ns)],
             )
             for flaw in _in_words([one for one in lacks if not self._is_behind(one.from_ns)]):
@@ -124,8 +124,8 @@ def _info_of(path: Path) -> SegmentInfo:
         return reader.info()
 
 
-def _being_written(path: Path) -> SegmentInfo:
-    """It is not opened: to count its records is to read it."""
+def being_written(path: Path) -> SegmentInfo:
+    """A segment that is not opened: to count its records is to read it."""
     began_ns = segment_began_ns(path)
     return SegmentInfo(path, SegmentState.OPEN, began_ns, began_ns, sys.maxsize, 0)
 

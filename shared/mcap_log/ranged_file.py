@@ -14,6 +14,7 @@ from shared.mcap_log.segment_file import SegmentFile
 FetchRange = Callable[[int, int], bytes]  # bytes from an offset until before another one
 _AHEAD_BYTES = 1 << 20  # behind what is asked for: the next chunks are asked for next
 _KEPT_BYTES = 64 << 20
+_PREFETCHED_BYTES = 32 << 20  # at once; the rest is fetched when it is read
 
 
 class RangedSegmentFile(SegmentFile):
@@ -39,15 +40,17 @@ class RangedSegmentFile(SegmentFile):
         """Keep fetched bytes for the next reader."""
 
     def prefetch(self, from_ns: int, until_ns: int) -> None:
-        """Fetch all chunks that have records of the time at once."""
+        """Fetch the chunks that have records of the time at once; of a long time the first."""
         wanted = [
             self._block_at(one.offset)
             for one in self._ranges.chunks
             if one.until_ns >= from_ns and one.from_ns < until_ns
         ]
         if wanted:
+            until = self._bounds[wanted[0]] + _PREFETCHED_BYTES
+            last = max(wanted[0], min(wanted[-1], bisect_right(self._bounds, until) - 2))
             with self._lock:
-                self._load(wanted[0], wanted[-1], ahead_bytes=0)
+                self._load(wanted[0], last, ahead_bytes=0)
 
     def read(self, offset: int, count: int) -> bytes:
         if offset + count > self.size:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, suppress
@@ -269,6 +270,81 @@ def test_a_station_archives_by_itself_and_shows_what_it_has_no_log_of(
                 browser.call("POST", "/replays", json={"incident_id": "i1"})
         finally:
             server.start()
+
+
+@pytest.mark.slow
+def test_what_is_asked_about_an_incident_without_its_log_comes_out_of_the_bucket(
+    data: Path, server: BucketServer, ask_as: Callable[[str], None], serve: Callable[..., Command],
+    tmp_path: Path,
+) -> None:  # fmt: skip
+    address = f"{ADDRESS}-asked"
+    succeeded("archive", "copy", address, "--data", data)
+    first = serve()
+    with Browser(first.wait_ready(), data) as browser:
+        with_log = asked_about_i1(browser)
+    assert first.stop() == 0
+    assert json.loads(with_log["timeline"] + "}")["silence_s"]["t_ms"]
+    assert json.loads(with_log["explanation"])["live_ms"]
+    assert len(with_log["raw"]) > 1000
+    assert "<svg" in with_log["report"]
+    forget_results(data)
+    for segment in segment_paths(data / "log")[:-1]:
+        segment.unlink()
+
+    second = serve()
+    with Browser(second.wait_ready(), data) as browser:
+        without_log = asked_about_i1(browser)
+        for name, content in with_log.items():
+            assert without_log[name] == content, name
+        forget_results(data)
+        server.stop()
+        try:
+            for path in addresses_about_i1(browser).values():
+                with pytest.raises(AssertionError, match=f"503 .*{address}.*nothing is lost"):
+                    browser.text(path)
+        finally:
+            server.start()
+        assert browser.text(addresses_about_i1(browser)["raw"]) == with_log["raw"]
+    assert second.stop() == 0
+    forget_results(data)
+    for arguments in (
+        ("report", "i1", "--html", tmp_path / "i1.html"),
+        ("export", "i1", tmp_path / "i1.csv", "--kind", "raw"),
+    ):
+        printed = succeeded(*arguments, "--data", data)
+        assert f"the log of i1 is not here any more: it is read in {address}" in printed
+    assert (tmp_path / "i1.csv").read_bytes().decode() == with_log["raw"]
+
+
+def addresses_about_i1(browser: Browser) -> dict[str, str]:
+    """What is made of the log, by name."""
+    (i1,) = (one for one in browser.call("GET", "/incidents") if one["incident_id"] == "i1")
+    during = f"from_ms={i1['opened_ms']}&until_ms={i1['closed_ms']}"
+    alarms = browser.call("GET", "/alarms?from_ms=0")
+    mayday = next(one["alarm_id"] for one in alarms if one["rule"] == "mayday")
+    return {
+        "timeline": f"/units/FF-01/timeline?{during}",
+        "explanation": f"/alarms/{mayday}/explanation",
+        "report": "/incidents/i1/report.html",
+        "raw": "/incidents/i1/export/csv?kind=raw",
+        "whole": "/incidents/i1/incident.mcap",
+    }
+
+
+def asked_about_i1(browser: Browser) -> dict[str, str]:
+    """Without the state of the files, which is another where they are gone."""
+    answers = {name: browser.text(path) for name, path in addresses_about_i1(browser).items()}
+    drawn = "".join(re.findall("<svg.*?</svg>", answers["report"], re.DOTALL))
+    timeline = answers["timeline"].partition(',"defects"')[0]
+    records = answers["whole"].partition("muster.incident")[0][:-20]  # its length, too
+    return answers | {"timeline": timeline, "report": drawn, "whole": records}
+
+
+def forget_results(data: Path) -> None:
+    """Of post-processing, which is done once."""
+    with Store(data / "station.sqlite") as store, store.write() as session:
+        for table in ("smoothed_incidents", "incident_trails", "looked_back"):
+            session.connection().exec_driver_sql(f"DELETE FROM {table}")
 
 
 def archive_of(browser: Browser) -> dict[str, Any]:

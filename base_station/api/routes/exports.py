@@ -111,11 +111,11 @@ def _whole(
     incident_id: str, station: Services, who: Principal, *, with_radio: bool
 ) -> Iterator[bytes]:
     incident = incident_or_404(station, incident_id)
-    if station.log is None:
+    if station.log_of is None:
         raise Problem(503, "This station has no log to make it from.")
     until_ns = station.clock.utc_ns()
     source = IncidentFileSource(
-        log=station.log,
+        log=station.log_of(incident),
         incident=incident,
         name=station.roster.shown(incident.name),
         people=station.roster.known_people(),

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from base_station.replay.processes import wire
 from base_station.replay.processes.server import ReplayProcesses
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.missing_segments import KnownSegment
 from shared.errors import StoreError
 
@@ -24,6 +25,10 @@ class LogProcess:
     prepare: Callable[[], object]  # brings recorded data to the disk
     note_damage: Callable[[str], None]  # of the log
     known_segments: Callable[[], Iterable[KnownSegment]]  # of the log, by the database
+    # Copy in an archive of an incident whose log is not here; None: it is.
+    instead_of_log: Callable[[IncidentRow], wire.ArchivedLog | None] = lambda _: None
+    # Between two station times: parts of the log that an archive has, and this station has not.
+    archived_parts: Callable[[int, int], tuple[wire.ArchivedPart, ...]] = lambda _from, _until: ()
 
     def ask(
         self,

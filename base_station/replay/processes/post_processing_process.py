@@ -43,6 +43,8 @@ class PostProcessingContext:
     note_damage: Callable[[str], None]  # of the log
     memory_mb: int = MEMORY_MB
     known_segments: Callable[[], Iterable[KnownSegment]] = tuple  # of the log, by the database
+    # Copy in an archive of an incident whose log is not here; None: it is.
+    instead_of_log: Callable[[IncidentRow], wire.ArchivedLog | None] = lambda _: None
 
 
 class PostProcessingProcess(PostProcessor):
@@ -73,7 +75,9 @@ class PostProcessingProcess(PostProcessor):
         live: Tracks,  # noqa: ARG002  # the process reads the shown tracks by itself
         on_progress: Progress = lambda _: None,
     ) -> PostProcessingResult:
-        """Raises StoreError where it was not done; MemoryLimitError, where it never will be."""
+        """Raises StoreError where it was not done; MemoryLimitError, where it never will be;
+        ArchiveError where the log is in an archive that does not answer.
+        """
         with self._working:
             line = self._begin(incident)
             try:
@@ -93,10 +97,11 @@ class PostProcessingProcess(PostProcessor):
 
     def _begin(self, incident: IncidentRow) -> wire.FrameChannel:
         self._place.prepare()
+        job = self._job(incident)  # may wait for an archive
         with self._lock:
             if self._closed:
                 raise StoreError("the station is stopping")
-            self._line = self._place.processes.start(self._job(incident))
+            self._line = self._place.processes.start(job)
             return self._line
 
     def _make_raw(self, incident: IncidentRow) -> Tracks:
@@ -114,6 +119,7 @@ class PostProcessingProcess(PostProcessor):
             now_ns=self._clock.utc_ns(),
             memory_mb=self._place.memory_mb,
             known_segments=tuple(self._place.known_segments()),
+            archived=self._place.instead_of_log(incident),
         )
 
     def _follow(

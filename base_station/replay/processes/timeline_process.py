@@ -19,14 +19,18 @@ class TimelineProcess:
     timeout_s: float = TIMEOUT_S
 
     def read(self, request: TimelineRequest) -> UnitTimeline:
-        """Raises StoreError with the reason where it cannot be read."""
+        """Raises StoreError with the reason where it cannot be read, ArchiveError where a part of
+        it is in an archive that does not answer.
+        """
+        window = request.window
         job = wire.TimelineJob(
             log=self.log_process.log,
             database=self.log_process.database,
             unit_id=request.unit_id,
-            from_ns=request.window.from_ns,
-            until_ns=request.window.until_ns,
+            from_ns=window.from_ns,
+            until_ns=window.until_ns,
             buckets=request.buckets,
             known_segments=tuple(self.log_process.known_segments()),
+            archived=self.log_process.archived_parts(window.from_ns, window.until_ns),
         )
         return self.log_process.ask(job, wire.read_timeline_result, self.timeout_s).timeline

@@ -26,6 +26,14 @@ class ArchivedLog(msgspec.Struct, frozen=True):
     entry: bytes  # its ``catalogue.json``
 
 
+class ArchivedPart(msgspec.Struct, frozen=True):
+    """Part of the log that is read in an archive: station times, ``until_ns`` excluded."""
+
+    from_ns: int
+    until_ns: int
+    log: ArchivedLog
+
+
 class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
     """First to a new process: the replay that it is to be."""
 
@@ -52,6 +60,7 @@ class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
     now_ns: int  # station time
     memory_mb: int  # of its own, at most
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
+    archived: ArchivedLog | None = None  # read in the place of the station's own
 
 
 class ReportJob(msgspec.Struct, frozen=True, tag="report"):
@@ -64,6 +73,7 @@ class ReportJob(msgspec.Struct, frozen=True, tag="report"):
     closed_ns: int | None
     as_pdf: bool
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
+    archived: ArchivedLog | None = None  # read in the place of the station's own
 
 
 class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
@@ -86,6 +96,7 @@ class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
     until_ns: int
     buckets: int
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
+    archived: tuple[ArchivedPart, ...] = ()  # of which the station's own log has no more
 
 
 class ArchiveJob(msgspec.Struct, frozen=True, tag="archive"):

@@ -1,0 +1,83 @@
+"""A station's log of which some parts are in an archive alone: each part is read where it is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Container, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from base_station.archive.entry import decoded_entry
+from base_station.archive.feed import ArchivedFeed
+from base_station.archive.store import open_store
+from base_station.engine.feed import LogFeed
+from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
+from base_station.storage.db.window import FOREVER_NS
+from base_station.storage.log_defects import LogDefects
+from base_station.storage.missing_segments import KnownSegment
+from shared.mcap_log import LogRecord
+
+
+@dataclass(frozen=True)
+class OpenedPart:
+    """Station times, ``until_ns`` excluded."""
+
+    from_ns: int
+    until_ns: int
+    log: LogFeed
+
+
+class PartlyArchivedFeed(LogFeed):
+    """Reading raises ArchiveError where the archive does not answer."""
+
+    def __init__(self, own: LogFeed, parts: Sequence[OpenedPart]) -> None:
+        """``parts``: in the order of time; of two that overlap the first is read."""
+        super().__init__(Path())
+        self._own, self._parts = own, parts
+
+    def records(
+        self,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        keys: Container[str] | None = None,
+    ) -> Iterator[LogRecord]:
+        at_ns, last_ns = start_ns or 0, FOREVER_NS if end_ns is None else end_ns
+        for part in self._parts:
+            from_ns, until_ns = max(part.from_ns, at_ns), min(part.until_ns, last_ns)
+            if from_ns < until_ns:
+                if at_ns < from_ns:
+                    yield from self._own.records(at_ns, from_ns, keys)
+                yield from part.log.records(from_ns, until_ns, keys)
+                at_ns = until_ns
+        if at_ns < last_ns:
+            yield from self._own.records(at_ns, end_ns, keys)
+
+
+def opened_copy(archived: ArchivedLog, flaws: LogDefects | None = None) -> ArchivedFeed:
+    """``flaws`` receives unreadable parts.  Raises ArchiveError."""
+    entry, store = decoded_entry(archived.entry, archived.location), open_store(archived.location)
+    files = {one.name: one for one in entry.files}
+    if flaws is None:
+        return ArchivedFeed(store, entry.incident_id, files, entry.log_id)
+    for words in entry.damage:
+        flaws.note(words)
+    return ArchivedFeed(store, entry.incident_id, files, entry.log_id, flaws.note_damage)
+
+
+def partly_archived(
+    own: LogFeed, parts: Sequence[ArchivedPart], flaws: LogDefects | None = None
+) -> PartlyArchivedFeed:
+    opened = [OpenedPart(one.from_ns, one.until_ns, opened_copy(one.log, flaws)) for one in parts]
+    return PartlyArchivedFeed(own, opened)
+
+
+def here_or_lost(
+    known: Collection[KnownSegment], parts: Sequence[ArchivedPart]
+) -> tuple[KnownSegment, ...]:
+    """Segments without those whose incident is read in an archive."""
+    return tuple(
+        segment
+        for segment in known
+        if not any(
+            segment.first_ns < part.until_ns and segment.last_ns >= part.from_ns for part in parts
+        )
+    )
