@@ -11,7 +11,7 @@ import os
 import secrets
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -172,14 +172,12 @@ class DepartmentOutbox:
         with self._lock:
             try:
                 database = self._database()
-                database.execute("BEGIN")
-                try:
+                with ExitStack() as undo:
+                    database.execute("BEGIN")
+                    undo.callback(_roll_back, database)
                     yield database
                     database.execute("COMMIT")
-                except BaseException:
-                    with suppress(sqlite3.Error):
-                        database.execute("ROLLBACK")
-                    raise
+                    undo.pop_all()
             except (sqlite3.Error, OSError) as error:
                 raise StoreError(f"{self._path} cannot be used: {error}") from error
 
@@ -197,22 +195,27 @@ class DepartmentOutbox:
     def _open(self) -> sqlite3.Connection:
         with suppress(FileExistsError):
             os.close(open_own(self._path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
-        database = sqlite3.connect(self._path, isolation_level=None, check_same_thread=False)
-        try:
+        with ExitStack() as undo:
+            database = sqlite3.connect(self._path, isolation_level=None, check_same_thread=False)
+            undo.callback(database.close)
             for pragma in _PRAGMAS:
                 database.execute(f"PRAGMA {pragma}")
             database.executescript(_SCHEMA)
             for row in ((_EPOCH, secrets.randbits(63)), (_ACKNOWLEDGED, 0), (_DROPPED, 0)):
                 database.execute("INSERT OR IGNORE INTO meta VALUES (?, ?)", row)
-        except BaseException:
-            database.close()
-            raise
+            undo.pop_all()
         return database
 
 
 def _delete(database: sqlite3.Connection, seq: int, reason: str) -> None:
     database.execute("DELETE FROM events WHERE seq <= ?", (seq,))
     database.execute("UPDATE meta SET value = max(value, ?) WHERE name = ?", (seq, reason))
+
+
+def _roll_back(database: sqlite3.Connection) -> None:
+    """The failure that led here is the one to be reported, not one of the rollback."""
+    with suppress(sqlite3.Error):
+        database.execute("ROLLBACK")
 
 
 def _set_aside(path: Path) -> None:
