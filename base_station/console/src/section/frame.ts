@@ -1,6 +1,7 @@
 /** From metres of the building to pixels of a side section.  Pure. */
 import { united, type Span } from "./axis";
 import { storeyHeightM, type Level } from "./levels";
+import type { Sheet } from "./marks";
 import type { Member } from "./members";
 
 export interface Size {
@@ -10,18 +11,13 @@ export interface Size {
   gutterPx: number; // on the left, for the names of floors
 }
 
-/** Pixels from the upper left corner; who is beyond what is drawn stands at its edge. */
-export interface Frame {
-  widthPx: number;
-  heightPx: number; // more than the window's where floors would be too low
-  leftPx: number; // where the building may begin
-  rightPx: number;
+/** Pixels from the upper left corner, higher than the window where floors would be too low; who is beyond
+ * what is drawn stands at its edge. */
+export interface Frame extends Sheet {
   topPx: number; // the highest that is drawn
   bottomPx: number;
   xOf(alongM: number): number;
   yOf(heightM: number): number;
-  storeyPx: number; // the lowest
-  isBeyond(alongM: number): -1 | 0 | 1; // left of what is drawn, on it, right of it
 }
 
 const EDGE_PX = 10;
@@ -49,6 +45,9 @@ export function frameOf(
   const rightPx = size.widthPx - EDGE_PX - half;
   const bottomPx = heightPx - EDGE_PX;
   const xScale = (rightPx - leftPx) / (span.toM - span.fromM);
+  const xOf = (alongM: number) => clamp(leftPx + (alongM - span.fromM) * xScale, leftPx, rightPx);
+  const yOf = (heightM: number) =>
+    clamp(bottomPx - (heightM - heights.fromM) * pxPerM, EDGE_PX + size.markPx, bottomPx);
   return {
     widthPx: size.widthPx,
     heightPx,
@@ -57,9 +56,15 @@ export function frameOf(
     topPx: EDGE_PX + size.markPx,
     bottomPx,
     storeyPx: pxPerM * lowestStoreyM(levels, storeyM),
-    isBeyond: (alongM) => (alongM < span.fromM - 0.5 ? -1 : alongM > span.toM + 0.5 ? 1 : 0),
-    xOf: (alongM) => clamp(leftPx + (alongM - span.fromM) * xScale, leftPx, rightPx),
-    yOf: (heightM) => clamp(bottomPx - (heightM - heights.fromM) * pxPerM, EDGE_PX + size.markPx, bottomPx),
+    xOf,
+    yOf,
+    placeOf: ({ alongM, heightM, errorM }) => ({
+      footXPx: xOf(alongM),
+      footYPx: yOf(heightM),
+      barTopPx: yOf(heightM + errorM),
+      barBottomPx: yOf(heightM - errorM),
+      beyond: alongM < span.fromM - 0.5 ? -1 : alongM > span.toM + 0.5 ? 1 : 0,
+    }),
   };
 }
 

@@ -1,22 +1,36 @@
 /** Where people stand in a side section: at their heights, side by side or as a number where they would
  * cover each other.  Pure. */
-import type { Frame } from "./frame";
 import { isAlone, type Member } from "./members";
 
 /** Left of a mark, for the bar of its height. */
 export const BAR_PX = 8;
 
-/** One person, or several as a number. */
-export interface SectionMark {
-  key: string; // of the first of them, who keeps it
-  members: readonly Member[];
-  floor: number | null;
-  xPx: number; // the middle
-  yPx: number;
-  footXPx: number; // where they are; the mark is beside it where others are in the way
+/** Where a person is in a drawing, in pixels from its upper left corner. */
+export interface Place {
+  footXPx: number;
   footYPx: number;
   barTopPx: number; // the height with its error
   barBottomPx: number;
+  beyond: -1 | 0 | 1; // left of what is drawn, on it, right of it
+}
+
+/** The drawing in which marks stand. */
+export interface Sheet {
+  widthPx: number;
+  heightPx: number;
+  leftPx: number; // where marks may stand
+  rightPx: number;
+  storeyPx: number; // the lowest
+  placeOf(member: Member): Place;
+}
+
+/** One person, or several as a number. */
+export interface SectionMark extends Place {
+  key: string; // of the first of them, who keeps it
+  members: readonly Member[];
+  floor: number | null;
+  xPx: number; // the middle, beside the place where others are in the way
+  yPx: number;
 }
 
 /** In steps of a mark, the nearest first. */
@@ -30,14 +44,14 @@ const JOIN_STEPS = 3;
 
 /** Who is in need or chosen first: they have a mark of their own, moved aside if need be; all others
  * join whoever of their floor stands there. */
-export function sectionMarks(members: readonly Member[], frame: Frame, markPx: number): SectionMark[] {
+export function sectionMarks(members: readonly Member[], sheet: Sheet, markPx: number): SectionMark[] {
   const stepPx = markPx + BAR_PX;
-  const sides = frame.storeyPx >= 2 * markPx + BAR_PX ? [...BESIDE, ...ABOVE] : BESIDE;
+  const sides = sheet.storeyPx >= 2 * markPx + BAR_PX ? [...BESIDE, ...ABOVE] : BESIDE;
   const placed: SectionMark[] = [];
   const isFree = (mark: SectionMark) =>
-    isOn(mark, frame, markPx) && !placed.some((other) => meet(mark, other, stepPx, markPx));
+    isOn(mark, sheet, markPx) && !placed.some((other) => meet(mark, other, stepPx, markPx));
   for (const member of [...members].sort((a, b) => rankOf(a) - rankOf(b))) {
-    const alone = markOf(member, frame, markPx);
+    const alone = markOf(member, sheet, markPx);
     const aside = sides.map(([right, down]) => moved(alone, right * stepPx, down * markPx));
     const free = (isAlone(member) ? aside : aside.slice(0, 1)).find(isFree);
     const host = free === undefined ? hostOf(alone, placed, stepPx, markPx) : -1;
@@ -52,18 +66,15 @@ function rankOf(member: Member): number {
   return member.chosen ? 0 : RANK[member.urgency];
 }
 
-function markOf(member: Member, frame: Frame, markPx: number): SectionMark {
-  const [footXPx, footYPx] = [frame.xOf(member.alongM), frame.yOf(member.heightM)];
+function markOf(member: Member, sheet: Sheet, markPx: number): SectionMark {
+  const place = sheet.placeOf(member);
   return {
+    ...place,
     key: member.unitId,
     members: [member],
     floor: member.floor,
-    xPx: footXPx,
-    yPx: footYPx - markPx / 2, // they stand on their height
-    footXPx,
-    footYPx,
-    barTopPx: frame.yOf(member.heightM + member.errorM),
-    barBottomPx: frame.yOf(member.heightM - member.errorM),
+    xPx: place.footXPx,
+    yPx: place.footYPx - markPx / 2, // they stand on their height
   };
 }
 
@@ -97,9 +108,9 @@ function meet(a: SectionMark, b: SectionMark, widthPx: number, heightPx: number)
   return Math.abs(a.xPx - b.xPx) < widthPx && Math.abs(a.yPx - b.yPx) < heightPx;
 }
 
-function isOn({ xPx, yPx }: SectionMark, frame: Frame, markPx: number): boolean {
+function isOn({ xPx, yPx }: SectionMark, sheet: Sheet, markPx: number): boolean {
   const half = markPx / 2;
   return (
-    xPx >= frame.leftPx - half && xPx <= frame.rightPx + half && yPx >= half && yPx <= frame.heightPx - half
+    xPx >= sheet.leftPx - half && xPx <= sheet.rightPx + half && yPx >= half && yPx <= sheet.heightPx - half
   );
 }

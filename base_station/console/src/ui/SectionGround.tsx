@@ -1,6 +1,7 @@
 import { BAR_PX } from "../section/marks";
 import { floor } from "../uiState";
-import type { DrawnMark, DrawnSection } from "../section/drawing";
+import type { DrawnSection } from "../section/drawing";
+import type { DrawnMark } from "../section/markDrawing";
 
 interface Props {
   section: DrawnSection;

@@ -1,4 +1,4 @@
-import type { DrawnMark } from "../section/drawing";
+import type { DrawnMark } from "../section/markDrawing";
 import { select } from "../uiState";
 import { t } from "../language/translate";
 
