@@ -56,7 +56,7 @@ export class Building {
       case "room":
         return this.area(this.colours.room, nameOf(feature));
       case "stairs":
-        return this.area(this.colours.stairs, nameOf(feature) || "stairs");
+        return this.area(this.colours.stairs, nameOf(feature) || t("drawing.stairs"));
       case "door":
         return new Style({ stroke: new Stroke({ color: this.colours.room, width: 4 }) });
       default:

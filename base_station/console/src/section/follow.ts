@@ -14,12 +14,16 @@ import { axis } from "./shown";
 
 export const NAME_FONT = "600 14px system-ui, sans-serif";
 /** Half as often as the plan, beside which it may stand. */
-const SECTION_REDRAW_MS = 400;
+export const SECTION_REDRAW_MS = 400;
 const MARK_PX = 30;
 const GLOVED_MARK_PX = 57; // 15 mm
 /** Less wide than this, floors have their short names. */
 export const NARROW_PX = 520;
 const GUTTER_PX = { narrow: 44, wide: 136 };
+
+export function markSizePx(): number {
+  return gloves.peek() === "on" ? GLOVED_MARK_PX : MARK_PX;
+}
 
 export interface Window {
   widthPx: number;
@@ -56,7 +60,7 @@ export function followSection(
         size: {
           widthPx,
           heightPx,
-          markPx: gloves.peek() === "on" ? GLOVED_MARK_PX : MARK_PX,
+          markPx: markSizePx(),
           gutterPx: widthPx < NARROW_PX ? GUTTER_PX.narrow : GUTTER_PX.wide,
         },
         textWidthPx: (text) => measureTextWidth(NAME_FONT, text),

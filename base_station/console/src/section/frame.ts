@@ -1,7 +1,7 @@
 /** From metres of the building to pixels of a side section.  Pure. */
 import { united, type Span } from "./axis";
 import { storeyHeightM, type Level } from "./levels";
-import type { Sheet } from "./marks";
+import { BAR_PX, type Sheet, type Step } from "./marks";
 import type { Member } from "./members";
 
 export interface Size {
@@ -19,6 +19,10 @@ export interface Frame extends Sheet {
   xOf(alongM: number): number;
   yOf(heightM: number): number;
 }
+
+/** The nearest first; the second ones where a storey has room for two rows. */
+const BESIDE: readonly Step[] = [[0, 0], [1, 0], [-1, 0], [2, 0], [-2, 0]];
+const ABOVE: readonly Step[] = [[0, -1], [1, -1], [-1, -1], [2, -1], [-2, -1]];
 
 const EDGE_PX = 10;
 const BAND_ROOM_PX = 10; // above and below a mark in its band
@@ -45,6 +49,7 @@ export function frameOf(
   const rightPx = size.widthPx - EDGE_PX - half;
   const bottomPx = heightPx - EDGE_PX;
   const xScale = (rightPx - leftPx) / (span.toM - span.fromM);
+  const storeyPx = pxPerM * lowestStoreyM(levels, storeyM);
   const xOf = (alongM: number) => clamp(leftPx + (alongM - span.fromM) * xScale, leftPx, rightPx);
   const yOf = (heightM: number) =>
     clamp(bottomPx - (heightM - heights.fromM) * pxPerM, EDGE_PX + size.markPx, bottomPx);
@@ -55,7 +60,7 @@ export function frameOf(
     rightPx,
     topPx: EDGE_PX + size.markPx,
     bottomPx,
-    storeyPx: pxPerM * lowestStoreyM(levels, storeyM),
+    aside: storeyPx >= 2 * size.markPx + BAR_PX ? [...BESIDE, ...ABOVE] : BESIDE,
     xOf,
     yOf,
     placeOf: ({ alongM, heightM, errorM }) => ({

@@ -20,9 +20,12 @@ export interface Sheet {
   heightPx: number;
   leftPx: number; // where marks may stand
   rightPx: number;
-  storeyPx: number; // the lowest
+  aside: readonly Step[]; // where a mark may stand, its own place first
   placeOf(member: Member): Place;
 }
+
+/** In marks, from a person's place. */
+export type Step = readonly [right: number, down: number];
 
 /** One person, or several as a number. */
 export interface SectionMark extends Place {
@@ -33,10 +36,6 @@ export interface SectionMark extends Place {
   yPx: number;
 }
 
-/** In steps of a mark, the nearest first. */
-const BESIDE = [[0, 0], [1, 0], [-1, 0], [2, 0], [-2, 0]] as const;
-const ABOVE = [[0, -1], [1, -1], [-1, -1], [2, -1], [-2, -1]] as const;
-
 const RANK = { immediate: 1, soon: 2, watch: 3, normal: 4 } as const;
 
 /** How far somebody joins others, in steps of a mark, where those in need leave no room. */
@@ -46,18 +45,17 @@ const JOIN_STEPS = 3;
  * join whoever of their floor stands there. */
 export function sectionMarks(members: readonly Member[], sheet: Sheet, markPx: number): SectionMark[] {
   const stepPx = markPx + BAR_PX;
-  const sides = sheet.storeyPx >= 2 * markPx + BAR_PX ? [...BESIDE, ...ABOVE] : BESIDE;
   const placed: SectionMark[] = [];
   const isFree = (mark: SectionMark) =>
     isOn(mark, sheet, markPx) && !placed.some((other) => meet(mark, other, stepPx, markPx));
   for (const member of [...members].sort((a, b) => rankOf(a) - rankOf(b))) {
     const alone = markOf(member, sheet, markPx);
-    const aside = sides.map(([right, down]) => moved(alone, right * stepPx, down * markPx));
-    const free = (isAlone(member) ? aside : aside.slice(0, 1)).find(isFree);
-    const host = free === undefined ? hostOf(alone, placed, stepPx, markPx) : -1;
-    const before = placed[host];
-    if (before === undefined) placed.push(free ?? aside.find(isFree) ?? alone);
-    else placed[host] = joined(before, alone);
+    const aside = sheet.aside.map(([right, down]) => moved(alone, right * stepPx, down * markPx));
+    const own = (isAlone(member) ? aside : aside.slice(0, 1)).find(isFree);
+    if (own === undefined && joinNearest(placed, alone, JOIN_STEPS * stepPx)) continue;
+    const beside = own ?? aside.find(isFree);
+    if (beside === undefined && joinNearest(placed, alone, Infinity)) continue;
+    placed.push(beside ?? alone);
   }
   return placed;
 }
@@ -78,17 +76,20 @@ function markOf(member: Member, sheet: Sheet, markPx: number): SectionMark {
   };
 }
 
-/** The nearest of the same floor, of who has no mark of their own rather than of who has; -1: nobody. */
-function hostOf(mark: SectionMark, placed: readonly SectionMark[], stepPx: number, markPx: number): number {
+/** Join the nearest of the same floor, of who has no mark of their own rather than of who has.  False: nobody
+ * is as near. */
+function joinNearest(placed: SectionMark[], mark: SectionMark, nearPx: number): boolean {
   const own = mark.members.some(isAlone);
-  let [best, nearest] = [-1, JOIN_STEPS * stepPx];
+  let [best, nearest] = [-1, nearPx];
   placed.forEach((other, i) => {
-    const apartPx = Math.abs(mark.xPx - other.xPx);
-    const level = Math.abs(mark.yPx - other.yPx) < markPx;
-    if (other.floor !== mark.floor || other.members.some(isAlone) !== own || !level) return;
+    const apartPx = Math.hypot(mark.xPx - other.xPx, mark.yPx - other.yPx);
+    if (other.floor !== mark.floor || other.members.some(isAlone) !== own) return;
     if (apartPx < nearest) [best, nearest] = [i, apartPx];
   });
-  return best;
+  const host = placed[best];
+  if (host === undefined) return false;
+  placed[best] = joined(host, mark);
+  return true;
 }
 
 function moved(mark: SectionMark, rightPx: number, downPx: number): SectionMark {

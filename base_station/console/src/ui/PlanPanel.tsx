@@ -10,13 +10,14 @@ import { PlanMap, type PlanEvents } from "../plan/map";
 import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
-import { section } from "../section/shown";
+import { section, view } from "../section/shown";
 import { t } from "../language/translate";
 import { Edges } from "./Edges";
 import { Floors } from "./Floors";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { PlanTools, ToolPanel } from "./PlanTools";
 import { SideSection } from "./SideSection";
+import { StackedFloors } from "./StackedFloors";
 
 export function PlanPanel({ picture }: { picture: Picture }) {
   const target = useRef<HTMLDivElement>(null);
@@ -45,8 +46,10 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   // A tool that wants places needs the plan.
   const withSection = section.value === "on" && !wantsPlaces(tool.value);
+  const isStacked = withSection && view.value === "stacked";
+  const shown = isStacked ? "with-section stacked" : withSection ? "with-section" : "";
   return (
-    <section class={`plan ${withSection ? "with-section" : ""}`} aria-label={t("plan_view.title")}>
+    <section class={`plan ${shown}`} aria-label={t("plan_view.title")}>
       <ErrorBoundary what={t("plan_view.tools")}>
         <PlanTools picture={picture} />
       </ErrorBoundary>
@@ -82,7 +85,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       </div>
       {withSection && (
         <ErrorBoundary what={t("section.title")}>
-          <SideSection picture={picture} />
+          {isStacked ? <StackedFloors picture={picture} /> : <SideSection picture={picture} />}
         </ErrorBoundary>
       )}
       <ErrorBoundary what={t("plan_view.tool")}>

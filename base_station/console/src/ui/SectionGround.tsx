@@ -59,7 +59,7 @@ const CAP_PX = 3;
 const BESIDE_PX = BAR_PX / 2;
 
 /** The height with its error, left of the place; a line leads to who stands aside. */
-function Bar({ mark, markPx }: { mark: DrawnMark; markPx: number }) {
+export function Bar({ mark, markPx }: { mark: DrawnMark; markPx: number }) {
   const { xPx, yPx, footXPx, footYPx, barTopPx, barBottomPx, urgency } = mark;
   const isAside = xPx !== footXPx || yPx !== footYPx - Math.round(markPx / 2);
   const x = isAside ? footXPx : footXPx - markPx / 2 - BESIDE_PX;

@@ -3,13 +3,13 @@ import { useEffect, useRef } from "preact/hooks";
 import { t } from "../language/translate";
 import type { Picture } from "../live/picture";
 import { AXES, type AxisChoice } from "../section/axis";
-import type { DrawnFloor, DrawnSection } from "../section/drawing";
-import type { DrawnMark } from "../section/markDrawing";
+import type { DrawnSection } from "../section/drawing";
 import { followSection, NARROW_PX, type Window } from "../section/follow";
 import { axis } from "../section/shown";
-import { floor, select, selectedUnit } from "../uiState";
+import { selectedUnit } from "../uiState";
 import { SectionGround } from "./SectionGround";
-import { Mark, MarkMembers } from "./SectionMark";
+import { NotLocated, OpenMark, SectionFloor } from "./SectionFloor";
+import { SectionView } from "./SectionView";
 
 /** The building from its side: everybody at their height.  Read aloud it is a list of floors. */
 export function SideSection({ picture }: { picture: Picture }) {
@@ -34,7 +34,6 @@ export function SideSection({ picture }: { picture: Picture }) {
   });
   const narrow = useComputed(() => window.value.widthPx < NARROW_PX);
   const section = drawn.value;
-  const opened = section?.floors.flatMap(({ marks }) => marks).find(({ key }) => key === open.value);
   return (
     <section class="section" aria-label={t("section.title")}>
       <div class="section-view" ref={view}>
@@ -43,16 +42,12 @@ export function SideSection({ picture }: { picture: Picture }) {
             <SectionGround section={section} widthPx={window.value.widthPx} />
             <ul aria-label={t("section.floors")}>
               {section.floors.map((one) => (
-                <Floor
+                <SectionFloor
                   key={one.floor}
                   floor={one}
+                  label={{ top: `${one.bottomPx}px` }}
                   narrow={narrow.value}
-                  openMark={opened === undefined ? null : open.value}
-                  press={(mark) => {
-                    const [single] = mark.members;
-                    if (mark.members.length > 1) open.value = open.value === mark.key ? null : mark.key;
-                    else if (single !== undefined) select(single.unitId, null);
-                  }}
+                  open={open}
                 />
               ))}
             </ul>
@@ -62,14 +57,15 @@ export function SideSection({ picture }: { picture: Picture }) {
       {section !== null && (
         <div class="section-ends">
           <span>◂ {section.left}</span>
-          <AxisChooser />
+          <div class="section-choices">
+            <AxisChooser />
+            <SectionView />
+          </div>
           <span>{section.right} ▸</span>
           <p class="quiet">{t("section.legend")}</p>
         </div>
       )}
-      {opened !== undefined && opened.members.length > 1 && (
-        <MarkMembers mark={opened} close={() => (open.value = null)} />
-      )}
+      <OpenMark floors={section?.floors ?? []} open={open} />
       <NotLocated picture={picture} />
     </section>
   );
@@ -99,39 +95,4 @@ function showInNeed(view: HTMLElement | null): void {
   const marks = [".section-mark.chosen", ".section-mark.immediate", ".shown > .section-floor"];
   const first = marks.map((one) => view?.querySelector(one)).find((one) => one !== null);
   first?.scrollIntoView({ block: "nearest" });
-}
-
-interface FloorProps {
-  floor: DrawnFloor;
-  narrow: boolean;
-  openMark: string | null;
-  press(mark: DrawnMark): void;
-}
-
-function Floor({ floor: one, narrow, openMark, press }: FloorProps) {
-  const people = one.marks.reduce((count, { members }) => count + members.length, 0);
-  return (
-    <li class={one.floor !== null && one.floor === floor.value ? "shown" : ""}>
-      <span class={one.floor === null ? "spoken" : "section-floor"} style={{ top: `${one.bottomPx}px` }}>
-        {narrow && <span aria-hidden="true">{one.short}</span>}
-        <span class={narrow ? "spoken" : ""}>{one.name}</span>
-        {!narrow && <small>{one.height}</small>}
-        <span class="spoken">{t("section.people_on", { count: people })}</span>
-      </span>
-      <ul>
-        {one.marks.map((mark) => (
-          <li key={mark.key}>
-            <Mark mark={mark} isOpen={openMark === mark.key} press={() => press(mark)} />
-          </li>
-        ))}
-      </ul>
-    </li>
-  );
-}
-
-/** Of whom no height is known; they are in no place of the drawing. */
-function NotLocated({ picture }: { picture: Picture }) {
-  void picture.unitsChanged.value;
-  const count = picture.allUnits().filter(({ position }) => position === null).length;
-  return count === 0 ? null : <p class="section-missing">{t("section.not_located", { count })}</p>;
 }

@@ -122,6 +122,9 @@ export const direction: Part<"direction"> = {
 export const section: Part<"section"> = {
   title: "Gebäudeschnitt",
   floors: "Geschosse, von oben",
+  view: "Gezeigt",
+  view_side: "von der Seite",
+  view_stacked: "gestapelt in 3D",
   axis: "Entlang",
   axis_longest: "längere Seite",
   axis_east: "West nach Ost",
@@ -133,4 +136,16 @@ export const section: Part<"section"> = {
   people_on: ", {count, plural, one {# Person} other {# Personen}}",
   here: "Personen an dieser Stelle",
   not_located: "Ohne Position, nicht gezeigt: {count, number}",
+};
+
+export const stack: Part<"stack"> = {
+  title: "Gestapelte Geschosse",
+  drawing: "Die Geschosse übereinander. Die Geschossliste sagt dasselbe in Worten.",
+  keys: "Pfeiltasten drehen, Plus und Minus zoomen, 0 zeigt alles.",
+  spread: "Höhen",
+  spread_by: "× {factor}",
+  loading: "Die 3D-Ansicht wird geladen.",
+  not_loaded: "Die 3D-Ansicht konnte nicht von der Station geladen werden: {reason}",
+  no_webgl: "Dieser Browser kann nicht in 3D zeichnen: WebGL fehlt oder ist abgeschaltet. Die Ansicht von der Seite zeigt dieselben Personen.",
+  legend: "Zum Drehen ziehen. Gezeichnet ist der Weg von Gewählten und Gefährdeten. Jede Person steht auf ihrer Höhe; der Balken enthält sie mit 95 %.",
 };

@@ -19,7 +19,7 @@ import { order, delivery } from "./orders";
 import { past } from "./past";
 import { board, radio, headcount, card, fact, list, confirmation } from "./people";
 import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
-import { plan_tools, plan_view, plan_form, drawing, pin, direction, section } from "./plan_tools";
+import { plan_tools, plan_view, plan_form, drawing, pin, direction, section, stack } from "./plan_tools";
 import { radio_audio } from "./radio_audio";
 import { replay, transport, timeline, crossing } from "./replay";
 import { route } from "./rescue";
@@ -110,6 +110,7 @@ export const en = {
   site,
   section,
   sound,
+  stack,
   standby,
   station,
   systems,

@@ -120,6 +120,9 @@ export const direction = {
 export const section = {
   title: "Side section",
   floors: "Floors, from the top",
+  view: "Shown",
+  view_side: "from the side",
+  view_stacked: "stacked in 3D",
   axis: "Along",
   axis_longest: "longer side",
   axis_east: "west to east",
@@ -131,4 +134,16 @@ export const section = {
   people_on: ", {count, plural, one {# person} other {# people}}",
   here: "People who stand here",
   not_located: "Without a position, not shown: {count, number}",
+} as const;
+
+export const stack = {
+  title: "Stacked floors",
+  drawing: "The floors above each other. The list of floors says the same in words.",
+  keys: "Arrow keys turn it, plus and minus zoom, 0 shows all of it.",
+  spread: "Heights",
+  spread_by: "× {factor}",
+  loading: "The view in 3D is being loaded.",
+  not_loaded: "The view in 3D could not be loaded from the station: {reason}",
+  no_webgl: "This browser cannot draw in 3D: it has no WebGL, or it is switched off. The view from the side shows the same people.",
+  legend: "Drag to turn. Drawn is the way of who is chosen or in danger. Each person stands at their height; the bar holds it with 95 %.",
 } as const;

@@ -121,6 +121,9 @@ export const direction: Part<"direction"> = {
 export const section: Part<"section"> = {
   title: "Coupe du bâtiment",
   floors: "Niveaux, de haut en bas",
+  view: "Vue",
+  view_side: "de côté",
+  view_stacked: "empilée en 3D",
   axis: "Le long",
   axis_longest: "du grand côté",
   axis_east: "d’ouest en est",
@@ -132,4 +135,16 @@ export const section: Part<"section"> = {
   people_on: ", {count, plural, one {# personne} other {# personnes}}",
   here: "Personnes à cet endroit",
   not_located: "Sans position, non montrées : {count, number}",
+};
+
+export const stack: Part<"stack"> = {
+  title: "Niveaux empilés",
+  drawing: "Les niveaux les uns au-dessus des autres. La liste des niveaux dit la même chose en mots.",
+  keys: "Les flèches tournent la vue, plus et moins la zooment, 0 montre tout.",
+  spread: "Hauteurs",
+  spread_by: "× {factor}",
+  loading: "La vue 3D se charge.",
+  not_loaded: "La vue 3D n’a pas pu être chargée depuis la station : {reason}",
+  no_webgl: "Ce navigateur ne peut pas dessiner en 3D : WebGL manque ou est désactivé. La vue de côté montre les mêmes personnes.",
+  legend: "Glisser pour tourner. Est tracé le chemin des personnes choisies ou en danger. Chaque personne est à sa hauteur ; la barre la contient à 95 %.",
 };
