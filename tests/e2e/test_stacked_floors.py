@@ -1,4 +1,4 @@
-"""Stacked floors in three dimensions: loaded on demand, turned by keys, with the section's marks."""
+"""Stacked floors in three dimensions: loaded on demand, turned by keys, marks of the section."""
 
 from __future__ import annotations
 
