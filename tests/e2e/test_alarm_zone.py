@@ -20,7 +20,20 @@ STAYS = ("Evacuate", "PAR", "Message")
 
 
 def places(page: Page) -> dict[str, object]:
-    """Where things stand that are pressed in haste, once the page stands."""
+    """Where things stand that are pressed in haste, once the page stands and hears its station.
+
+    A busy machine may keep the page waiting for so long that it counts the station as lost for a
+    moment, and then a frame around everything moves all by its width.
+    """
+    lost = page.locator(".console.stopped")
+    while True:
+        expect(lost).to_have_count(0)
+        measured = measured_places(page)
+        if lost.count() == 0:
+            return measured
+
+
+def measured_places(page: Page) -> dict[str, object]:
     drawn(page)
     bar = page.get_by_role("group", name="Commands")
     buttons = {
