@@ -23,6 +23,7 @@ const PLAN = plan([
   area("outline", 0),
   area("stairs", 0),
   area("room", 1),
+  area("stairs", 2), // nothing is above them
   {
     type: "Feature",
     properties: { kind: "door", floor: 0 },

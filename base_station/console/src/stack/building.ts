@@ -52,7 +52,7 @@ export function stackedBuilding(
   const high = (levels.at(-1)?.heightM ?? 0) + storeyM;
   return {
     floors,
-    edges: floors.flatMap((one, i) => stairEdges(one, floors[i + 1]?.heightM ?? one.heightM + storeyM)),
+    edges: floors.flatMap((one, i) => stairEdges(one, floors[i + 1])),
     bounds: { eastM, northM, upM: [low, high] },
   };
 }
@@ -102,12 +102,13 @@ function linesOf(geometry: Geometry): Corner[][] {
   return polygons(geometry).flat();
 }
 
-/** Upright, at the corners of the stairs. */
-function stairEdges({ stairs, heightM }: StackedFloor, nextM: number): [Place3, Place3][] {
+/** Upright, at the corners of the stairs; none where no floor is above them. */
+function stairEdges({ stairs, heightM }: StackedFloor, above: StackedFloor | undefined): [Place3, Place3][] {
+  if (above === undefined) return [];
   return stairs.flatMap(([ring]) =>
     (ring ?? []).slice(1).map(([east = 0, north = 0]): [Place3, Place3] => [
       [east, north, heightM],
-      [east, north, nextM],
+      [east, north, above.heightM],
     ]),
   );
 }
