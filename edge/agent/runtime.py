@@ -54,6 +54,7 @@ _WAIT_S = 0.05
 _HEARTBEAT_NS = NS_PER_S
 _SILENT_NS = 2 * NS_PER_S
 _CLOCK_TIMEOUT_S = 5.0
+_COMPILED_S = 3.0  # of samples, after which all of the tracker's code has run once
 _EARLY_NS = 10 * NS_PER_S  # after its start: a tracker that fails by then will fail again
 _CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without the tracker
 
@@ -101,6 +102,8 @@ class Agent:
         self._next_heartbeat_ns = 0
         self._last_batch_ns = 0
         self._started_ns = 0
+        self._tracked_s = 0.0  # of the source's time
+        self._is_ready = False
         self._failure: Exception | None = None  # of the tracker, soon after the start
         self._silence_reported = False
         self._storage_faults = ["", "", "", "", ""]
@@ -123,7 +126,6 @@ class Agent:
             parts.wearer.start()
             if parts.start_check is not None:
                 parts.start_check.start(parts.clock.monotonic_ns())
-            parts.manager.ready()
             while not stop.is_set() and not parts.reader.ended:
                 if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
                     reason = "the time that was set is over"
@@ -147,8 +149,18 @@ class Agent:
         self._step_start_check()
         self._parts.clock.turn(self._ask_time)
         self._check_parts()
+        self._notify_ready()
         if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
             self._send_heartbeat()
+
+    def _notify_ready(self) -> None:
+        """End the start, whose time is not limited, when the tracker is compiled: that takes a
+        slow machine longer than the watchdog waits.  A source that gives nothing is not waited for.
+        """
+        if self._is_ready or not (self._tracked_s >= _COMPILED_S or self._is_over(_EARLY_NS)):
+            return
+        self._is_ready = True
+        self._parts.manager.ready()
 
     def _take_batch(self, timed: TimedBatch) -> None:
         parts = self._parts
@@ -164,6 +176,7 @@ class Agent:
             parts.start_check.push(timed.batch)
         parts.pipeline.set_journal_pending(parts.journal.pending)
         self._step_pipeline(batch_of(raw), timed.timeline)
+        self._tracked_s = timed.since_start_s
         down = any(
             outage.start_s <= timed.since_start_s < outage.start_s + outage.duration_s
             for outage in parts.source.radio_outages
