@@ -1,4 +1,4 @@
-"""The station's settings: what is refused, and what is said."""
+"""Settings of the station: refusals, and messages."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def written(tmp_path: Path, toml: str) -> Path:
     return path
 
 
-def test_the_defaults_open_nothing_plain_to_the_network() -> None:
+def test_defaults_open_nothing_unencrypted_to_the_network() -> None:
     config = StationConfig()
     assert config.unencrypted_endpoints() == ()
     assert config.configuration_problems() == ()
     config.require_encryption()
 
 
-def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_path: Path) -> None:
+def test_unencrypted_bus_is_a_problem_also_on_the_loopback(tmp_path: Path) -> None:
     toml = "[bus]\nlisten = ['tcp/127.0.0.1:7447']\n"
     (problem,) = load_config(written(tmp_path, toml), StationConfig).configuration_problems()
     assert "plain TCP" in problem
@@ -51,7 +51,7 @@ def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_pa
         ("log_level = 'LOUD'\n", "WARNING"),
     ],
 )
-def test_a_wrong_setting_is_named_with_the_right_one(
+def test_wrong_setting_is_named_with_the_right_one(
     tmp_path: Path, toml: str, reported: str
 ) -> None:
     with pytest.raises(ConfigError) as error:
@@ -72,7 +72,7 @@ def test_a_wrong_setting_is_named_with_the_right_one(
         ("tcp/station.local:7447", "10.0.0.1:80", ("tcp/station.local:7447", "10.0.0.1:80")),
     ],
 )
-def test_plain_connections_from_elsewhere_need_a_word(
+def test_unencrypted_connections_from_elsewhere_need_an_explicit_setting(
     tmp_path: Path, bus: str, http: str, plain: tuple[str, ...]
 ) -> None:
     toml = f"[bus]\nlisten = ['{bus}']\n[http]\nlisten = '{http}'\n"
@@ -84,13 +84,13 @@ def test_plain_connections_from_elsewhere_need_a_word(
     load_config(written(tmp_path, "insecure = true\n" + toml), StationConfig).require_encryption()
 
 
-def test_an_address_is_taken_apart() -> None:
+def test_address_is_parsed() -> None:
     assert host_and_port("[::1]:80") == ("::1", 80)
     assert host_and_port("station.local:8080") == ("station.local", 8080)
 
 
 @pytest.mark.slow
-def test_settings_are_read_before_what_takes_its_time() -> None:
-    """So that a wrong one is said at once."""
+def test_settings_are_read_before_slow_steps() -> None:
+    """So that a wrong one is reported at once."""
     script = "import sys; import base_station.config; sys.exit('scipy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""The activity benchmark prints its tables and writes what they show."""
+"""The activity benchmark prints and writes its tables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.bench.tracker.activity import bench_activity
 from tests.bench.tracker.activity_scoring import Confusion
 
 
-def test_a_confusion_counts_and_shares():
+def test_confusion_matrix_has_counts_and_shares():
     confusion = Confusion()
     for reported in (Activity.STILL, Activity.STILL, Activity.WALKING):
         confusion.add(Activity.STILL, reported)
@@ -22,7 +22,7 @@ def test_a_confusion_counts_and_shares():
 
 
 @pytest.mark.slow
-def test_one_wearer_is_enough_for_all_activities(tmp_path, capsys):
+def test_one_wearer_has_all_activities(tmp_path, capsys):
     file = tmp_path / "activity.json"
     bench_activity(None, file, first_seed=90, seeds=1)
     figures = json.loads(file.read_text())["simulated"]

@@ -26,7 +26,7 @@ def walked():
     return found.simulation, found.imu, found.truth
 
 
-def test_a_track_that_is_the_truth_has_no_error_whatever_its_north(walked):
+def test_true_track_has_no_error_whatever_its_north(walked):
     simulation, imu, truth = walked
     rows = track(simulation.description, imu, "eskf")
     c, s = np.cos(1.1), np.sin(1.1)
@@ -43,7 +43,7 @@ def test_a_track_that_is_the_truth_has_no_error_whatever_its_north(walked):
     assert again.heading_deg == pytest.approx(found.heading_deg)
 
 
-def test_a_track_that_is_too_high_says_by_how_much(walked):
+def test_track_that_is_too_high_has_that_error(walked):
     simulation, imu, truth = walked
     rows = track(simulation.description, imu, "eskf")
     raised_m = rows.position_n_m - [0.0, 0.0, 2.0]
@@ -53,7 +53,7 @@ def test_a_track_that_is_too_high_says_by_how_much(walked):
 
 
 @pytest.mark.slow
-def test_the_calibration_is_of_the_very_unit_that_walks():
+def test_calibration_is_that_of_the_walking_unit():
     """Its bias is found, and another seed's is another."""
     for seed in (0, 1):
         simulation = Simulation(SQUARE, seed, UNCALIBRATED_SENSORS)
@@ -64,7 +64,7 @@ def test_the_calibration_is_of_the_very_unit_that_walks():
         assert np.abs(rate_radps).max() < np.radians(0.1)
 
 
-def test_a_unit_without_errors_needs_no_calibration():
+def test_unit_without_errors_needs_no_calibration():
     gyro = replace(CONSUMER_SENSORS.imu.gyro, bias_std=0.0, g_sensitivity_std=0.0)
     imu = replace(CONSUMER_SENSORS.imu, gyro=gyro, accel=TriadErrors(noise_density=1.5e-3))
     calibration = calibration_of(Simulation(SQUARE, 0, replace(CONSUMER_SENSORS, imu=imu)))

@@ -1,4 +1,4 @@
-"""``muster bench floors`` counts floors that are right; targets are not asserted."""
+"""``muster bench floors`` counts correct floors; targets are not asserted."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from tests.rig.incident.run import draw_incident
 
 
 @pytest.mark.slow
-def test_it_writes_the_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two people; guessing among four floors would be right a quarter of the time."""
+def test_bench_writes_the_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two people; a guess among four floors would be right a quarter of the time."""
     monkeypatch.setattr(floors, "draw_incident", lambda random: draw_incident(random)[:2])
     bench_floors(incidents=1, seed=2, json_file=tmp_path / "figures.json")
     figures = json.loads((tmp_path / "figures.json").read_text())

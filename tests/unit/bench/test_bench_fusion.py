@@ -1,4 +1,4 @@
-"""``muster bench fusion`` measures the fuser beside simpler ways; targets are not asserted."""
+"""``muster bench fusion`` measures the fuser beside simpler ones; targets are not asserted."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def figures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-def test_it_writes_the_figures(figures: dict[str, Any]) -> None:
+def test_bench_writes_the_figures(figures: dict[str, Any]) -> None:
     assert figures["incidents"] == 1
     assert figures["ce50_m"][WITH_PLAN]["outside"] < figures["ce95_m"][WITH_PLAN]["outside"]
 
 
 @pytest.mark.slow
-def test_together_they_are_better_than_each_alone(figures: dict[str, Any]) -> None:
-    """The recipe is worth something only where the simpler ways are worse at all stages."""
+def test_fuser_is_better_than_each_simpler_one(figures: dict[str, Any]) -> None:
+    """The fuser is worth its cost only where the simpler ones are worse at all stages."""
     for way in ("fixes alone", "switching"):
         for stage, error_m in figures["ce95_m"][way].items():
             assert figures["ce95_m"][WITH_PLAN][stage] < error_m, f"{way}, {stage}"
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_errors() -> None:
+def test_same_seed_gives_the_same_errors() -> None:
     runs = []
     for _ in range(2):
         person = draw_incident(np.random.default_rng(3))[1]
@@ -55,7 +55,7 @@ def test_the_same_seed_gives_the_same_errors() -> None:
     assert np.array_equal(runs[0], runs[1])
 
 
-def test_scores_added_are_those_of_all_people_together() -> None:
+def test_added_scores_are_those_of_all_people_together() -> None:
     people = draw_incident(np.random.default_rng(3))[:2]
     all_of_them, added = Scores(), Scores()
     for number, person in enumerate(people):
@@ -73,7 +73,7 @@ def test_scores_added_are_those_of_all_people_together() -> None:
         assert added.part_astray(how) == all_of_them.part_astray(how)
 
 
-def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None:
+def test_simulated_people_walk_twenty_minutes_and_through_no_wall() -> None:
     for person in draw_incident(np.random.default_rng(4)):
         truth, building = person.truth, person.building
         assert truth.t_s[-1] == pytest.approx(LASTS_S, abs=1.0)
@@ -89,7 +89,7 @@ def test_simulated_people_live_twenty_minutes_and_walk_through_no_wall() -> None
             assert (grid.crossings(floor, from_m, to_m) < WALL).all()
 
 
-def test_trials_without_their_tracks_are_not_taken_for_none(tmp_path: Path) -> None:
+def test_trials_without_their_tracks_are_an_error(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="--tracks"):
         bench_fusion(walks=tmp_path)
     with pytest.raises(UserError, match="--walks"):

@@ -14,7 +14,7 @@ from tests.golden.documented_figures import read_table
 SHORT = Scenario("short", "walks 8 m", (Stand(4.0), Walk(((8.0, 0.0),)), Stand(3.0)))
 
 
-def test_an_ordinary_walk_ends_where_it_should_and_is_stated_so():
+def test_ordinary_walk_ends_at_its_place_and_states_its_error():
     (found,) = measure_hard_motions("eskf", (SHORT,), range(2))
     assert (found.scenario, found.walks) == ("short", 2)
     assert 0.0 < found.horizontal_m < 0.3
@@ -25,7 +25,7 @@ def test_an_ordinary_walk_ends_where_it_should_and_is_stated_so():
     assert hard_motions_table([found]).row_count == 1
 
 
-def test_a_walk_that_the_tracker_misses_is_off_by_its_length():
+def test_walk_that_the_tracker_misses_is_off_by_its_length():
     """``huang`` takes a leg in a brace for one that stands."""
     dragged = Scenario("drag", "", (Stand(4.0), Walk(((8.0, 0.0),), "drag"), Stand(3.0)))
     (found,) = measure_hard_motions("huang", (dragged,), range(1))

@@ -1,4 +1,4 @@
-"""Counting instructions: skipped by name without the means, and the sums."""
+"""Instruction counts: skipped with a reason without valgrind, and the sums."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.bench.tracker import instructions
 from tests.bench.tracker.instructions import bench_instructions, count_instructions
 
 
-def test_without_valgrind_it_says_so_and_goes_on(monkeypatch, capsys):
+def test_missing_valgrind_is_reported_and_the_bench_continues(monkeypatch, capsys):
     monkeypatch.setattr(shutil, "which", lambda _: None)
     bench_instructions()
     assert "skipped, valgrind is not installed" in capsys.readouterr().out
@@ -30,14 +30,14 @@ def test_start_and_stop_cancel_out_of_the_two_lengths(monkeypatch):
     assert count_instructions("eskf") == pytest.approx(300.0)
 
 
-def test_a_process_that_cannot_be_counted_is_a_reason_not_a_crash(monkeypatch, capsys):
+def test_process_that_cannot_be_counted_is_a_reason_not_a_crash(monkeypatch, capsys):
     monkeypatch.setattr(shutil, "which", lambda name: name)
     monkeypatch.setattr(instructions, "_PLAIN", ("false",))
     bench_instructions()
     assert "skipped" in capsys.readouterr().out
 
 
-def test_a_process_that_takes_too_long_is_ended(monkeypatch, capsys):
+def test_process_that_takes_too_long_is_ended(monkeypatch, capsys):
     monkeypatch.setattr(shutil, "which", lambda name: name)
     monkeypatch.setattr(instructions, "_PLAIN", ("sh", "-c", "exec sleep 60"))
     monkeypatch.setattr(instructions, "_LONGEST_S", 0.2)

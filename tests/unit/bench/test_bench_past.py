@@ -1,6 +1,6 @@
-"""``muster bench past`` measures what looking back takes, and what live positions feel of it.
+"""``muster bench past`` measures the cost of post-processing, and its effect on live positions.
 
-Of its targets only memory is asserted, by what a minute of a unit takes.
+Of its targets only memory is asserted, by the need of a minute of a unit.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def figures(folder: Path, units: int, minutes: float) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-def test_it_writes_the_figures_and_more_people_take_no_more_memory_than_an_hour_may(
+def test_bench_writes_the_figures_and_memory_stays_below_the_limit(
     tmp_path: Path,
 ) -> None:
     few, many = figures(tmp_path, 3, 1.0), figures(tmp_path, 20, 10.0)

@@ -1,4 +1,4 @@
-"""Worse sensors made from a recording, and what counts as blowing up silently."""
+"""Worse sensors made from a recording, and the criterion of a silent failure."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_every_perturbation_gives_a_recording_and_the_same_each_time(perturbatio
 
 
 @pytest.mark.parametrize("full_scale", [None, 9.0])
-def test_another_mount_is_a_rotation(full_scale):
+def test_changed_mount_is_a_rotation(full_scale):
     reported = SensorDescription("walk", 200.0, gyro_full_scale_radps=full_scale)
     _, imu = other_mount(reported, WALK.imu, seed())
     turn = np.linalg.lstsq(WALK.imu.gyro_radps, imu.gyro_radps, rcond=None)[0]
@@ -42,7 +42,7 @@ def test_another_mount_is_a_rotation(full_scale):
         assert set(np.round(np.abs(turn), 9).ravel()) == {0.0, 1.0}
 
 
-def test_a_slow_sensor_that_filters_turns_by_as_much():
+def test_slow_filtered_sensor_turns_by_as_much():
     description, slow = slower(66.0, filtered=True)(WALK.description, WALK.imu, seed())
     assert description.rate_hz == pytest.approx(200.0 / 3)
     turned = slow.gyro_radps.sum(axis=0) / description.rate_hz
@@ -54,7 +54,7 @@ def test_clipping_is_reported_with_its_scale():
     assert np.abs(imu.gyro_radps).max() == description.gyro_full_scale_radps
 
 
-def test_silent_is_wrong_without_a_word():
+def test_silent_failure_is_a_large_error_without_a_low_quality():
     def outcome(right, stated):
         return Outcome("noise x 3", "made", "straight", 1.0, right, stated)
 

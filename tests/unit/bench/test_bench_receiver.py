@@ -1,4 +1,4 @@
-"""The receiver that is cut into walks errs as much as it says, and as long as it is told to."""
+"""The simulated receiver of walks has the errors that it states, for the time that is set."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MINUTE_S = 60.0
 
 
 def errors_m(errors: Errors, at_s: tuple[float, ...]) -> NDArray[np.float64]:
-    """Of many receivers (n, times, 2)."""
+    """Errors of many receivers (n, times, 2)."""
     rng, drawn = np.random.default_rng(5), []
     for _ in range(2000):
         receiver = Receiver(rng, errors)
@@ -22,13 +22,13 @@ def errors_m(errors: Errors, at_s: tuple[float, ...]) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("common_m", [0.0, 1.5])
-def test_it_errs_as_much_as_it_says(common_m: float) -> None:
+def test_errors_have_the_stated_size(common_m: float) -> None:
     errors = Errors(common_m=common_m)
     off_m = errors_m(errors, (0.0, MINUTE_S))
     assert off_m.std(axis=0) == pytest.approx(np.full((2, 2), errors.fix_std_m), rel=0.05)
 
 
-def test_what_all_share_is_left_when_its_own_errors_are_gone() -> None:
+def test_common_error_remains_without_own_errors() -> None:
     for common_m in (0.0, 1.5):
         before_m, after_m = errors_m(Errors(common_m=common_m), (0.0, 5.0 * MINUTE_S)).swapaxes(
             0, 1

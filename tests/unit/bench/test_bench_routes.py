@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.bench.routes import bench_routes
 
 
-def test_it_writes_the_figures_with_a_plan_and_without(tmp_path: Path) -> None:
+def test_bench_writes_the_figures_with_a_plan_and_without(tmp_path: Path) -> None:
     file = tmp_path / "figures.json"
     bench_routes(people=4, minutes=1, json_file=file)
     with_plan, without = json.loads(file.read_text())

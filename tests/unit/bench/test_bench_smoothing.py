@@ -48,7 +48,7 @@ def test_recording_changes_nothing(scores: SmoothingScores) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScores) -> None:
+def test_smoothed_trail_is_better_and_pins_help(scores: SmoothingScores) -> None:
     report = scores.report(seed=1)
     live, smoothed = report.live_mean_m[WITHOUT], report.smoothed_mean_m[WITHOUT]
     assert smoothed["inside"] < live["inside"]
@@ -61,7 +61,7 @@ def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScore
 
 
 @pytest.mark.slow
-def test_relative_errors_are_less_what_is_common_to_all(scores: SmoothingScores) -> None:
+def test_relative_errors_exclude_the_common_part(scores: SmoothingScores) -> None:
     report = scores.report(seed=1)
     assert report.live_mean_m[SHIFTED]["inside"] == pytest.approx(5.0)
     assert report.live_relative_m[SHIFTED]["inside"] == pytest.approx(0.0, abs=1e-9)

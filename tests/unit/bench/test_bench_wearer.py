@@ -11,7 +11,7 @@ from tests.bench.wearer import bench_wearer
 
 
 @pytest.mark.slow
-def test_it_writes_the_figures(tmp_path: Path) -> None:
+def test_bench_writes_the_figures(tmp_path: Path) -> None:
     bench_wearer(trials=2, outage=False, json_file=tmp_path / "figures.json")
     figures = json.loads((tmp_path / "figures.json").read_text())
     for name in ("mayday_s", "order_s", "pre_alert_s"):

@@ -1,4 +1,4 @@
-"""``muster bench constants``: it varies all constants, and finds those that decide nothing."""
+"""``muster bench constants``: it varies all constants, and finds those without effect."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_shares_near_one_stay_below_it():
     assert changed("consistency.memory", 0.5).consistency.memory == pytest.approx(0.85)
 
 
-def test_a_constant_of_an_absent_sensor_never_decides_and_one_of_stances_does(walk):
+def test_constant_of_an_absent_sensor_has_no_effect_and_one_of_stances_has(walk):
     found = measure_constants([walk], [OF_STANCE, OF_A_BAROMETER])
     assert [one.constant for one in found] == [OF_A_BAROMETER, OF_STANCE]
     idle, deciding = found

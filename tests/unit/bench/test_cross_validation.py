@@ -1,4 +1,4 @@
-"""Which configuration the other datasets would have chosen."""
+"""Configuration that the other datasets would have chosen."""
 
 from __future__ import annotations
 

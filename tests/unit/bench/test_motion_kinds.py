@@ -14,7 +14,7 @@ RATE_HZ = 100.0
 
 
 def foot(peak_radps, stride):
-    """A foot that turns by a sine wave for a part of each stride (s), and rests else."""
+    """A foot that turns by a sine wave for a part of each stride (s), and rests otherwise."""
     t_s = np.arange(3000) / RATE_HZ
     phase = (t_s / stride) % 1.0
     rate = np.where(phase < 0.5, peak_radps * np.sin(2.0 * np.pi * phase), 0.0)

@@ -1,4 +1,4 @@
-"""``muster bench motions``: no kind of motion has a say in the constants it is scored by."""
+"""``muster bench motions``: no kind of motion is used to choose the constants it is scored by."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class KnownStudy(Study):
         return [Outcome(error_m, 0.95, 1.0, silent)]
 
 
-def test_a_motion_is_scored_by_what_the_others_choose():
+def test_motion_is_scored_with_the_choice_of_the_others():
     good_for_runs = {(FIRST, 2.0, "running"): 0.1, (FIRST, 2.0, "walking"): 1.5}
     good_for_all = {(SECOND, 0.5, motion): 0.8 for motion in ("walking", "running", "crawling")}
     results = {one.motion: one for one in leave_each_out(KnownStudy(good_for_runs | good_for_all))}
@@ -45,7 +45,7 @@ def test_a_motion_is_scored_by_what_the_others_choose():
     assert results["walking"].shipped[0].error_m == 1.0
 
 
-def test_what_makes_a_walk_silently_wrong_is_not_chosen():
+def test_constant_with_silent_failures_is_not_chosen():
     better = {(FIRST, 2.0, "running"): 0.1, (SECOND, 2.0, "running"): 0.5}
     study = KnownStudy(better, silent={(FIRST, 2.0)})
     assert tune(study, ["running", "walking"]) == {SECOND: 2.0}

@@ -19,10 +19,10 @@ def test_results_come_in_the_order_of_the_parts() -> None:
     assert list(side_by_side(math.factorial, parts, "")) == [math.factorial(one) for one in parts]
 
 
-def test_it_is_another_process_that_works() -> None:
+def test_work_runs_in_another_process() -> None:
     assert os.getpid() not in set(side_by_side(process_of, range(4), ""))
 
 
-def test_what_the_work_raises_is_raised_here() -> None:
+def test_exception_of_the_work_is_raised_here() -> None:
     with pytest.raises(ValueError, match="factorial"):
         list(side_by_side(math.factorial, [3, -1, 4], ""))

@@ -1,4 +1,4 @@
-"""Error figures on tracks whose errors are known."""
+"""Error figures of tracks with known errors."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_armse_is_ate_by_root_two_and_heights_lose_their_mean():
     assert score.per_cent_of_distance == pytest.approx(0.5, rel=1e-3)
 
 
-def test_a_closed_loop_is_scored_by_its_ends():
+def test_closed_loop_is_scored_by_its_ends():
     position = np.linspace([0.0, 0.0, 0.0], [0.3, 0.4, -0.2], 50)
     score = score_track(rows_along(position), None, closed_loop=True)
     assert score.closure_horizontal_m == pytest.approx(0.5)
@@ -86,7 +86,7 @@ def test_a_closed_loop_is_scored_by_its_ends():
     assert score.ate_m is None
 
 
-def test_errors_as_large_as_stated_are_in_the_ellipse_95_times_in_100():
+def test_errors_of_the_stated_size_are_in_the_ellipse_95_times_in_100():
     noise = np.random.default_rng(5)
     position = np.cumsum(noise.normal(0.0, 1.0, (20_000, 3)), axis=0)
     covariance = np.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.0], [0.0, 0.0, 0.01]])
@@ -112,8 +112,8 @@ def test_covariance_turns_with_the_track():
     np.testing.assert_allclose(turned[0], np.diag([4.0, 1.0, 9.0]), atol=1e-9)
 
 
-def test_a_heading_that_drifts_is_not_spread_over_the_beginning():
-    """Fitted, the start of a walk that bends is wrong; held by its first heading it is right."""
+def test_drift_of_the_heading_is_not_spread_over_the_beginning():
+    """Fitted, the start of a bent walk is wrong; aligned by its first heading it is right."""
     along_m = np.linspace(0.0, 50.0, 200)
     drift_rad = 0.004 * along_m
     truth = np.column_stack((along_m, np.zeros(200), np.zeros(200)))
@@ -133,7 +133,7 @@ def test_rows_are_interpolated_at_the_reference_times():
     assert position[0, 0] == pytest.approx(10.5)
 
 
-def test_silently_wrong_is_what_is_over_three_stated_regions_off_and_good():
+def test_silent_failure_is_an_error_over_three_stated_regions_with_good_quality():
     truth = RecordedTruth(TIMES_S[:200], curve())
     off_m = np.linspace(0.0, 2.0, 200)[:, np.newaxis]
     high = rows_along(curve() + off_m * [0.0, 0.0, 1.0])  # deviations of 0.1 m: 0.59 m are too much
@@ -144,7 +144,7 @@ def test_silently_wrong_is_what_is_over_three_stated_regions_off_and_good():
     assert score_track(high, truth, closed_loop=False).silently_wrong == 0.0
 
 
-def test_a_closed_walk_is_silently_wrong_by_its_end():
+def test_closed_walk_fails_silently_by_its_end():
     rows = rows_along(curve())
     assert score_track(rows, None, closed_loop=True).silently_wrong == 1.0
     rows.quality[-1] = Quality.LOST
@@ -156,8 +156,8 @@ def test_a_closed_walk_is_silently_wrong_by_its_end():
     )
 
 
-def test_a_truth_that_is_held_until_it_jumps_is_none():
-    """Motion capture without its markers; a foot that stands, and one that runs, are no such."""
+def test_reference_that_is_held_until_it_jumps_is_invalid():
+    """Motion capture without its markers; a standing foot, and a running one, are valid."""
     t_s = np.linspace(0.0, 0.35, 8)
     north_m = np.array([0.0, 0.3, 0.3, 0.3, 1.3, 1.7, 1.7, 2.0])
     truth = RecordedTruth(t_s, np.column_stack((north_m, np.zeros(8), np.zeros(8))))

@@ -25,11 +25,11 @@ def test_errors_are_those_of_beginning_and_end():
     assert errors_s == pytest.approx(np.array([(-0.1, 0.1), (-0.2, -0.05)]))
 
 
-def test_a_swing_that_nobody_tracked_is_missed():
+def test_swing_without_track_is_missed():
     rows = rows_with_swings([(1.0, 1.6)])
     assert swing_errors(rows, np.array([(1.1, 1.5), (4.1, 4.5)])).shape == (1, 2)
 
 
-def test_a_stance_that_was_missed_leaves_no_swing_to_compare():
+def test_missed_stance_leaves_no_swing_to_compare():
     rows = rows_with_swings([(1.0, 2.55)])  # two swings in one
     assert swing_errors(rows, np.array([(1.1, 1.5), (2.2, 2.6)])).shape == (0, 2)

@@ -1,4 +1,6 @@
-"""The comparison of places on simulated walks: every tracker at its places, and its tables."""
+"""Comparison of places on the body on simulated walks: every tracker at its places, and its
+tables.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ from tests.bench.tracker.simulated_elsewhere import (
 
 
 @pytest.mark.slow
-def test_every_tracker_that_is_not_for_a_foot_walks_with_a_sensor_at_each_of_its_places() -> None:
+def test_every_tracker_without_a_foot_walks_with_a_sensor_at_each_place() -> None:
     out_and_back = Scenario("out-and-back", "", (Walk(((12.0, 0.0), (12.0, 4.0), (0.0, 0.0))),))
     results = measure_simulated_elsewhere([out_and_back], lasts_s=25.0)
     expected = {

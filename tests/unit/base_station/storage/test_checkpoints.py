@@ -1,4 +1,4 @@
-"""The folder of checkpoints stays small: close together lately, a minute apart before."""
+"""The folder of checkpoints stays small: recent ones close together, older ones a minute apart."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def times(folder: Path) -> list[int]:
     return sorted(int(path.stem) for path in folder.iterdir())
 
 
-def test_old_ones_are_thinned_out_and_the_newest_is_always_there(tmp_path: Path) -> None:
+def test_old_checkpoints_are_thinned_and_the_newest_is_always_there(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     state = make_pipeline().checkpoint()
     for number in range(1, 200):
@@ -34,7 +34,7 @@ def test_old_ones_are_thinned_out_and_the_newest_is_always_there(tmp_path: Path)
 
 
 @pytest.mark.slow
-def test_there_are_never_too_many(tmp_path: Path) -> None:
+def test_number_of_checkpoints_is_bounded(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     state = make_pipeline().checkpoint()
     for number in range(1, KEPT_FAR + KEPT_CLOSE + 30):
@@ -42,7 +42,7 @@ def test_there_are_never_too_many(tmp_path: Path) -> None:
     assert len(times(tmp_path)) <= KEPT_FAR + KEPT_CLOSE
 
 
-def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
+def test_latest_before_a_time_is_found(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     assert checkpoints.latest() is None
     for t_ns in (100, 200, 300):
@@ -57,7 +57,7 @@ def test_the_latest_before_a_time_is_found(tmp_path: Path) -> None:
     assert checkpoints.latest(until_ns=250, after_ns=200) is None
 
 
-def test_where_the_latest_is_torn_the_one_before_it_is_used(tmp_path: Path) -> None:
+def test_checkpoint_before_a_torn_one_is_used(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     for t_ns in (100, 200, 300):
         checkpoints.save(t_ns, 1, make_pipeline().checkpoint())
@@ -68,7 +68,7 @@ def test_where_the_latest_is_torn_the_one_before_it_is_used(tmp_path: Path) -> N
     assert saved.t_ns == 200
 
 
-def test_a_file_that_is_none_of_them_is_left(tmp_path: Path) -> None:
+def test_file_that_is_no_checkpoint_is_left(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     checkpoints.save(100, 1, make_pipeline().checkpoint())
     (path,) = tmp_path.iterdir()
@@ -78,18 +78,20 @@ def test_a_file_that_is_none_of_them_is_left(tmp_path: Path) -> None:
     assert saved.t_ns == 100
 
 
-def test_those_of_another_program_are_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parts of the state may look otherwise inside; the log has everything that matters."""
+def test_checkpoints_of_another_program_are_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Parts of the state may have another form; the log has everything that matters."""
     Checkpoints(tmp_path).save(100, 3, make_pipeline().checkpoint())
     assert Checkpoints(tmp_path).latest() is not None
     monkeypatch.setattr("base_station.storage.checkpoints._program", lambda: 7)
     assert Checkpoints(tmp_path).latest() is None
 
 
-def test_any_module_that_is_another_makes_another_program(
+def test_any_changed_module_makes_another_program(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What lies beside the modules, and others may be changing just now, does not."""
+    """Other files beside the modules, which may be changing just now, do not."""
     package = SimpleNamespace(__path__=[str(tmp_path)])
     monkeypatch.setattr("base_station.storage.checkpoints.base_station", package)
     monkeypatch.setattr("base_station.storage.checkpoints.shared", package)
@@ -109,7 +111,7 @@ def test_any_module_that_is_another_makes_another_program(
         assert _program() in programs
 
 
-def test_all_of_them_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_total_size_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("base_station.storage.checkpoints.KEPT_BYTES", 2000)
     checkpoints = Checkpoints(tmp_path)
     for number in range(1, 50):
@@ -119,10 +121,10 @@ def test_all_of_them_together_are_bounded(tmp_path: Path, monkeypatch: pytest.Mo
     assert sum(path.stat().st_size for path in old) <= 2000
 
 
-def test_one_that_is_being_saved_while_all_are_removed_is_saved_or_removed(
+def test_checkpoint_saved_during_a_removal_is_saved_or_removed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is not taken for a disk that fails."""
+    """It is not reported as a failing disk."""
     checkpoints, replace = Checkpoints(tmp_path), Path.replace
     removing = Thread(target=checkpoints.clear)
 

@@ -1,4 +1,4 @@
-"""A file in the folder of a log that is none of its segments is left out, and named."""
+"""Files in the folder of a log that are none of its segments are left out, and named."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def written(folder: Path, began_ns: int, segments: int = SEGMENTS) -> Path:
 
 
 def by_earlier_version(path: Path) -> Path:
-    """The same records in a segment that does not say of which log it is."""
+    """The same records in a segment that does not state its log."""
     with SegmentReader(path) as reader:
         records = list(reader.records())
     path.unlink()
@@ -67,7 +67,7 @@ def elsewhere(tmp_path: Path, after_s: int) -> Path:
 
 
 def by_others(path: Path) -> Path:
-    """What any program may write, of the time that its name says."""
+    """Files of any program, of the time in their name."""
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start(profile="ros2")
@@ -84,7 +84,7 @@ def seconds(data: DataFolder, reported: list[str]) -> list[int]:
 
 
 @pytest.mark.parametrize("is_earlier", [False, True])
-def test_what_stands_in_the_place_of_a_segment(
+def test_foreign_file_in_the_place_of_a_segment_is_left_out(
     is_earlier: bool, data: DataFolder, tmp_path: Path
 ) -> None:
     other = elsewhere(tmp_path, 6000)
@@ -106,10 +106,10 @@ def test_what_stands_in_the_place_of_a_segment(
 
 @pytest.mark.parametrize("number", [1, 3, 5, 99])
 @pytest.mark.parametrize("after_s", [-6000, 6000])
-def test_what_stands_beside_the_segments_under_a_name_of_its_own(
+def test_foreign_file_beside_the_segments_is_left_out(
     number: int, after_s: int, data: DataFolder, tmp_path: Path
 ) -> None:
-    """Also behind all others, where the log may have gone on by its names and times."""
+    """Also behind all others, where the log may have continued by its names and times."""
     own = segment_paths(data.log)
     beside = segment_path(data.log, number, T0_NS + after_s * NS_PER_S)
     shutil.copy(elsewhere(tmp_path, after_s), beside)
@@ -123,10 +123,10 @@ def test_what_stands_beside_the_segments_under_a_name_of_its_own(
 
 @pytest.mark.parametrize("number", [1, 3, 99])
 @pytest.mark.parametrize("after_s", [-6000, 6000])
-def test_of_what_earlier_versions_wrote_names_and_times_tell(
+def test_segments_of_earlier_versions_are_judged_by_names_and_times(
     number: int, after_s: int, data: DataFolder, tmp_path: Path
 ) -> None:
-    """Only behind all others a later one is as the log may have gone on."""
+    """Only a later one behind all others may be a continuation of the log."""
     own = [by_earlier_version(path) for path in segment_paths(data.log)]
     other = by_earlier_version(elsewhere(tmp_path, after_s))
     beside = segment_path(data.log, number, T0_NS + after_s * NS_PER_S)
@@ -138,7 +138,7 @@ def test_of_what_earlier_versions_wrote_names_and_times_tell(
     assert seconds(data, []) == [*range(40)]
 
 
-def test_a_log_of_an_earlier_version_goes_on_and_takes_in_no_other(
+def test_log_of_an_earlier_version_continues_and_takes_in_no_other(
     data: DataFolder, tmp_path: Path
 ) -> None:
     own = [by_earlier_version(path) for path in segment_paths(data.log)]
@@ -157,7 +157,7 @@ def test_a_log_of_an_earlier_version_goes_on_and_takes_in_no_other(
 
 
 @pytest.mark.parametrize("beside_number", [1, 5])
-def test_a_station_goes_on_as_if_what_is_foreign_were_not_there(
+def test_station_continues_as_without_the_foreign_file(
     beside_number: int, data: DataFolder, tmp_path: Path
 ) -> None:
     """With no number left out, and of the same log after each start."""
@@ -172,8 +172,8 @@ def test_a_station_goes_on_as_if_what_is_foreign_were_not_there(
     assert foreign == {beside: OTHER_LOG}
 
 
-def test_what_is_written_anew_stays_of_its_log(data: DataFolder) -> None:
-    """Of which nobody may know anything but the segments around it."""
+def test_rewritten_segment_stays_of_its_log(data: DataFolder) -> None:
+    """Only the segments around it may identify it."""
     own = segment_paths(data.log)
     rewrite_segment(own[1], lambda record: [(record[0], KEY, b"redacted")])
     content = bytearray(own[2].read_bytes())
@@ -188,8 +188,8 @@ def test_what_is_written_anew_stays_of_its_log(data: DataFolder) -> None:
     assert {head.log_id for head in heads if head} == {identity_of(own[0]).log_id}  # type: ignore[union-attr]
 
 
-def test_a_log_that_was_lost_goes_on_as_the_same(data: DataFolder, tmp_path: Path) -> None:
-    """What is put back from a backup is of it."""
+def test_lost_log_continues_as_the_same(data: DataFolder, tmp_path: Path) -> None:
+    """Segments restored from a backup belong to it."""
     backup = shutil.copytree(data.log, tmp_path / "backup")
     with closing(Recorder(data.path, ManualClock())) as recorder:
         log_id = recorder.segments()[0].log_id
@@ -203,7 +203,7 @@ def test_a_log_that_was_lost_goes_on_as_the_same(data: DataFolder, tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", ["foreign.mcap", "empty.mcap"])
-def test_what_has_no_number(name: str, data: DataFolder, tmp_path: Path) -> None:
+def test_file_without_number_is_left_out(name: str, data: DataFolder, tmp_path: Path) -> None:
     beside = data.log / name
     if name == "empty.mcap":
         beside.touch()
@@ -217,7 +217,7 @@ def test_what_has_no_number(name: str, data: DataFolder, tmp_path: Path) -> None
         assert recorder.foreign.keys() == {beside}
 
 
-def test_any_reader_of_mcap_sees_of_which_log_a_segment_is(data: DataFolder) -> None:
+def test_any_reader_of_mcap_reads_the_log_of_a_segment(data: DataFolder) -> None:
     first, second, *_ = segment_paths(data.log)
     with second.open("rb") as file:
         (head,) = make_reader(file).iter_metadata()
@@ -225,7 +225,7 @@ def test_any_reader_of_mcap_sees_of_which_log_a_segment_is(data: DataFolder) -> 
     assert len(head.metadata["log_id"]) == 16
 
 
-def test_what_another_program_wrote(data: DataFolder) -> None:
+def test_file_of_another_program_is_left_out(data: DataFolder) -> None:
     beside = by_others(segment_path(data.log, 5, T0_NS + 60 * NS_PER_S))
     reported: list[str] = []
     assert seconds(data, reported) == [*range(40)]
@@ -233,7 +233,7 @@ def test_what_another_program_wrote(data: DataFolder) -> None:
     assert own_segments(data.log)[1].keys() == {beside}
 
 
-def test_a_station_that_starts_beside_one_goes_on_and_its_clock_too(
+def test_station_that_starts_beside_one_continues_and_its_clock_too(
     data: DataFolder, tmp_path: Path
 ) -> None:
     own = segment_paths(data.log)
@@ -243,8 +243,8 @@ def test_a_station_that_starts_beside_one_goes_on_and_its_clock_too(
         assert recorder.foreign.keys() == {own[-1]}
 
 
-def test_a_segment_that_is_damaged_is_no_foreign_one(data: DataFolder) -> None:
-    """Where its first chunk is, or what that says of its times."""
+def test_damaged_segment_is_no_foreign_one(data: DataFolder) -> None:
+    """Damage in its first chunk, or in its times."""
     path = segment_paths(data.log)[2]
     whole = path.read_bytes()
     for at in range(0, 400, 3):

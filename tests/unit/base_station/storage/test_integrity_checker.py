@@ -1,4 +1,4 @@
-"""The log is looked at again: what was whole once may not be later."""
+"""Repeated check of the log: segments that were whole may be damaged later."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def flip(recorder: Recorder) -> Path:
     return path
 
 
-def test_what_breaks_later_is_found_by_the_next_round(
+def test_later_damage_is_found_by_the_next_round(
     recorder: Recorder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check = looked(IntegrityChecker(""), recorder)
@@ -57,7 +57,7 @@ def test_what_breaks_later_is_found_by_the_next_round(
     assert looked(check, recorder, 60).damaged == (path,)
 
 
-def test_what_the_disk_does_not_open_is_reported_and_keeps_no_station_from_its_start(
+def test_unreadable_segment_is_reported_and_prevents_no_start(
     recorder: Recorder, tmp_path: Path
 ) -> None:
     shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
@@ -69,9 +69,7 @@ def test_what_the_disk_does_not_open_is_reported_and_keeps_no_station_from_its_s
         assert sum(1 for _ in LogFeed(again.folder).records()) > 0
 
 
-def test_a_file_of_the_log_that_is_gone_when_the_station_starts_is_reported(
-    recorder: Recorder, tmp_path: Path
-) -> None:
+def test_segment_missing_at_the_start_is_reported(recorder: Recorder, tmp_path: Path) -> None:
     shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
     assert looked(IntegrityChecker(""), recorder).problems() == ()
     (tmp_path / "elsewhere" / "log" / recorder.segments()[1].path.name).unlink()
@@ -80,7 +78,7 @@ def test_a_file_of_the_log_that_is_gone_when_the_station_starts_is_reported(
         assert reported.startswith("Files of the log are gone, by their numbers 2: check the disk")
 
 
-def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:
+def test_damage_found_by_a_reader_is_checked_at_once(recorder: Recorder) -> None:
     check = looked(IntegrityChecker(""), recorder)
     feed = LogFeed(recorder.folder, recorder.flush, check.recheck)
     assert sum(1 for _ in feed.records()) == 300
@@ -92,10 +90,10 @@ def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:
     assert check._read == known, "it is known"
 
 
-def test_one_that_was_put_back_from_a_backup_is_damaged_no_more(
+def test_segment_restored_from_a_backup_is_damaged_no_more(
     recorder: Recorder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As the console tells people to do it."""
+    """As the console advises people to do it."""
     monkeypatch.setattr("base_station.storage.integrity_checker._AGAIN_LOOKS", 50)
     whole = recorder.segments()[0].path.read_bytes()
     path = flip(recorder)
@@ -105,7 +103,7 @@ def test_one_that_was_put_back_from_a_backup_is_damaged_no_more(
     assert looked(check, recorder, 60).problems() == ()
 
 
-def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
+def test_only_records_stepped_at_the_start_are_lacking() -> None:
     lacking = StaleState()
     lacking.note_stepped(100, 200)
     for end_ns, lacks in ((90, False), (210, False), (150, True), (210, True)):
@@ -114,7 +112,7 @@ def test_only_what_was_stepped_as_the_station_started_is_lacking() -> None:
         assert bool(lacking.problems()) is lacks
 
 
-def test_a_station_that_lacks_something_starts_again_when_it_can_be_spared() -> None:
+def test_station_with_missing_records_restarts_when_idle() -> None:
     lacking = StaleState()
     assert not lacking.can_be_made_good(leads=False, spared=True, in_incident=False)
     lacking.note_stepped(100, 200)
@@ -125,7 +123,7 @@ def test_a_station_that_lacks_something_starts_again_when_it_can_be_spared() -> 
     assert not lacking.can_be_made_good(leads=True, spared=False, in_incident=False)
 
 
-def test_what_was_cut_out_of_a_file_is_missing_though_the_rest_can_be_read(
+def test_records_cut_out_of_a_file_are_missing_though_the_rest_is_readable(
     recorder: Recorder,
 ) -> None:
     check, path = IntegrityChecker(""), recorder.segments()[0].path

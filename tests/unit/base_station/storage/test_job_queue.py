@@ -1,4 +1,4 @@
-"""What people asked for is told at once, whatever the disk makes of it."""
+"""Jobs of operators: their state is reported at once, whatever the disk does."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def asked_for(jobs: JobList[Job], name: str) -> Job:
     return jobs.add(lambda _: Job(name))
 
 
-def test_how_things_stand_is_reported_while_the_disk_hangs(
+def test_state_is_reported_while_the_disk_hangs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The live picture tells it."""
+    """The live picture shows it."""
     jobs = JobList(tmp_path / "jobs.json", Job)
     asked_for(jobs, "first")
     (first,) = jobs.under_way()
@@ -68,7 +68,7 @@ def test_how_things_stand_is_reported_while_the_disk_hangs(
     assert [one.share for one in reported_later] == [0.0, 0.0]
 
 
-def test_of_those_that_are_over_the_last_are_reported_and_all_that_are_not(tmp_path: Path) -> None:
+def test_last_finished_jobs_and_all_open_ones_are_reported(tmp_path: Path) -> None:
     jobs = JobList(tmp_path / "jobs.json", Job)
     for number in range(50):
         asked_for(jobs, f"job {number}")
@@ -79,7 +79,7 @@ def test_of_those_that_are_over_the_last_are_reported_and_all_that_are_not(tmp_p
     assert [one.name for one in jobs.all()] == [*over[:-1], "job 3", over[-1]]
 
 
-def test_what_the_disk_does_not_take_is_not_begun(
+def test_job_that_the_disk_refuses_is_not_begun(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     jobs = JobList(tmp_path / "jobs.json", Job)
@@ -93,7 +93,7 @@ def test_what_the_disk_does_not_take_is_not_begun(
     assert jobs.all() == ()
 
 
-def test_queue_works_on_jobs_of_an_earlier_run_and_on_those_that_are_added(tmp_path: Path) -> None:
+def test_queue_works_on_jobs_of_an_earlier_run_and_on_added_ones(tmp_path: Path) -> None:
     path, done = tmp_path / "jobs.json", SimpleQueue[str]()
     asked_for(JobList(path, Job), "before the restart")
 

@@ -1,4 +1,4 @@
-"""What a log lacks, by its own segments and by what the database knows of them."""
+"""Missing records of a log, by its own segments and by the database's list of them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ KNOWN = [known(number) for number in range(1, 5)]
 WHOLE = [segment(number) for number in range(1, 5)]
 
 
-def test_a_whole_log_lacks_nothing_known_or_not() -> None:
+def test_whole_log_lacks_nothing_with_or_without_a_list() -> None:
     assert log_gaps(WHOLE, KNOWN) == []
     assert log_gaps(WHOLE, []) == []
     assert log_gaps([], []) == []
@@ -42,7 +42,7 @@ def test_a_whole_log_lacks_nothing_known_or_not() -> None:
     assert log_gaps(longer, KNOWN) == [], "the table is some seconds behind"
 
 
-def test_what_is_gone_is_named_with_its_times() -> None:
+def test_missing_segment_is_named_with_its_times() -> None:
     (lack,) = log_gaps([WHOLE[0], *WHOLE[2:]], KNOWN)
     assert (lack.number, lack.from_ns, lack.until_ns) == (2, at(10), at(19))
     assert lack.is_file_missing
@@ -57,7 +57,7 @@ def test_what_is_gone_is_named_with_its_times() -> None:
     assert [one.number for one in log_gaps([], KNOWN)] == [1, 2, 3, 4], "all"
 
 
-def test_without_a_table_the_numbers_and_their_neighbours_tell() -> None:
+def test_missing_segment_is_found_without_a_table_by_numbers_and_neighbours() -> None:
     assert log_gaps([WHOLE[0], WHOLE[3]], []) == [
         LogGap(2, "", at(9), at(30), is_file_missing=True),
         LogGap(3, "", at(9), at(30), is_file_missing=True),
@@ -65,7 +65,7 @@ def test_without_a_table_the_numbers_and_their_neighbours_tell() -> None:
     assert log_gaps(WHOLE[1:], []) == [LogGap(1, "", 0, at(10), is_file_missing=True)]
 
 
-def test_what_was_cut_lacks_its_end_and_what_was_emptied_all() -> None:
+def test_truncated_segment_lacks_its_end_and_an_emptied_one_all() -> None:
     cut = [WHOLE[0], segment(2, 40, 13.0), *WHOLE[2:]]
     name = WHOLE[1].path.name
     assert log_gaps(cut, KNOWN) == [LogGap(2, name, at(13), at(19), 40, 100)]
@@ -76,13 +76,13 @@ def test_what_was_cut_lacks_its_end_and_what_was_emptied_all() -> None:
     assert log_gaps(emptied, []) == [LogGap(2, name, at(10), at(20))]
 
 
-def test_what_a_kill_costs_the_newest_segment_is_no_damage() -> None:
+def test_loss_of_a_kill_in_the_newest_segment_is_no_damage() -> None:
     assert log_gaps([*WHOLE[:-1], segment(4, 97, 38.0)], KNOWN) == []
     assert len(log_gaps([*WHOLE[:-1], segment(4, 60, 35.0)], KNOWN)) == 1
     assert len(log_gaps([*WHOLE[:-2], segment(3, 97, 28.0), WHOLE[-1]], KNOWN)) == 1
 
 
-def test_a_check_tells_of_it_until_it_is_mended() -> None:
+def test_check_reports_damage_until_it_is_repaired() -> None:
     check = IntegrityChecker("It is mended.")
     lacks = log_gaps([segment(1, 40), segment(2, 50), WHOLE[3]], KNOWN)
     check.note_lacks(FOLDER, lacks)
@@ -100,14 +100,14 @@ def test_a_check_tells_of_it_until_it_is_mended() -> None:
     assert first.name not in check.lacking
 
 
-def test_of_many_only_some_are_named() -> None:
+def test_only_some_of_many_are_named() -> None:
     check = IntegrityChecker("")
     check.note_lacks(FOLDER, log_gaps([], [known(number) for number in range(1, 30)]))
     (reported,) = check.problems()
     assert "; and 24 more" in reported
 
 
-def test_what_is_no_segment_is_named() -> None:
+def test_file_that_is_no_segment_is_named() -> None:
     check = IntegrityChecker("")
     check.note_foreign({FOLDER / "000009-20231114T221320Z.mcap": "it is of another time"})
     (reported,) = check.problems()

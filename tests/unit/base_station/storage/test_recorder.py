@@ -1,4 +1,4 @@
-"""The recorder: always on, one a folder, nothing lost without being told."""
+"""The recorder: always on, one for each folder, every loss reported."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ def payloads(data: Path) -> list[bytes]:
     return [payload for _, _, payload in read_log(data / LOG_FOLDER)]
 
 
-def test_an_urgent_record_is_on_the_disk_when_write_returns(tmp_path: Path) -> None:
+def test_urgent_record_is_on_the_disk_when_write_returns(tmp_path: Path) -> None:
     with recording(tmp_path) as recorder:
         assert recorder.write(T0_NS, KEY, b"1")
         assert recorder.write(T0_NS, KEY, b"alarm", urgent=True)
         assert payloads(tmp_path) == [b"1", b"alarm"]
 
 
-def test_what_is_in_memory_can_be_read_back_at_once(tmp_path: Path) -> None:
+def test_records_in_memory_are_readable_at_once(tmp_path: Path) -> None:
     with recording(tmp_path) as recorder:
         feed = LogFeed(recorder.folder, recorder.flush)
         for number in range(1000):
@@ -63,10 +63,10 @@ def test_what_is_in_memory_can_be_read_back_at_once(tmp_path: Path) -> None:
         assert len(list(feed.records())) == 1000
 
 
-def test_what_was_written_before_the_segments_were_asked_for_is_in_them(
+def test_segments_hold_all_records_written_before_the_call(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Somebody else's flush is under way meanwhile; what is forgotten is looked for in them."""
+    """Another flush is in progress meanwhile; an erasure searches the segments."""
     with recording(tmp_path) as recorder, ThreadPoolExecutor() as others:
         writes, begun, go = recorder._writer.add, Event(), Event()
 
@@ -90,20 +90,20 @@ def test_what_was_written_before_the_segments_were_asked_for_is_in_them(
     assert stated == [b"1", b"2"]
 
 
-def test_closing_writes_what_is_left(tmp_path: Path) -> None:
+def test_close_writes_the_remaining_records(tmp_path: Path) -> None:
     with recording(tmp_path) as recorder:
         recorder.write(T0_NS, KEY, b"1")
     assert payloads(tmp_path) == [b"1"]
 
 
-def test_a_second_station_on_the_folder_is_refused(tmp_path: Path) -> None:
+def test_second_station_on_the_folder_is_refused(tmp_path: Path) -> None:
     with recording(tmp_path), pytest.raises(DataFolderInUseError, match="another station is using"):
         Recorder(tmp_path, SystemClock())
     with recording(tmp_path):
         pass
 
 
-def test_a_segment_that_is_written_is_open_and_one_that_nobody_writes_is_torn(
+def test_segment_being_written_is_open_and_an_abandoned_one_is_torn(
     tmp_path: Path,
 ) -> None:
     def states(data: Path) -> list[str]:
@@ -121,7 +121,7 @@ def test_a_segment_that_is_written_is_open_and_one_that_nobody_writes_is_torn(
         assert "torn" not in states(copy)
 
 
-def test_segments_are_reported_of_when_they_are_complete(tmp_path: Path) -> None:
+def test_complete_segments_are_reported(tmp_path: Path) -> None:
     reported: list[tuple[SegmentInfo, str]] = []
     recorder = Recorder(
         tmp_path,
@@ -142,7 +142,7 @@ def test_segments_are_reported_of_when_they_are_complete(tmp_path: Path) -> None
     assert [(info.messages, note) for info, note in reported] == [(10, ""), (5, "")]
 
 
-def test_a_torn_segment_is_mended_at_the_start_and_reported_of(tmp_path: Path) -> None:
+def test_torn_segment_is_repaired_at_the_start_and_reported(tmp_path: Path) -> None:
     torn = SegmentWriter(tmp_path / LOG_FOLDER)
     torn.write(T0_NS, KEY, b"1", urgent=True)
     notes: list[str] = []
@@ -154,7 +154,7 @@ def test_a_torn_segment_is_mended_at_the_start_and_reported_of(tmp_path: Path) -
     assert payloads(tmp_path) == [b"1", b"2"]
 
 
-def test_a_list_of_segments_that_fails_stops_nothing(
+def test_failing_list_of_segments_stops_nothing(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     def failing(info: SegmentInfo, note: str) -> None:
@@ -168,7 +168,7 @@ def test_a_list_of_segments_that_fails_stops_nothing(
     assert "not in the list" in caplog.text
 
 
-def test_a_recorder_that_fails_says_so_and_counts_what_it_refuses(tmp_path: Path) -> None:
+def test_failing_recorder_is_reported_and_counts_refused_records(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path, SystemClock())
     recorder.write("no time", KEY, b"")  # type: ignore[arg-type]  # a bug
     assert not recorder.flush()
@@ -178,7 +178,7 @@ def test_a_recorder_that_fails_says_so_and_counts_what_it_refuses(tmp_path: Path
     recorder.close()
 
 
-def test_a_disk_that_hangs_is_stated_and_hardly_waited_for(
+def test_hanging_disk_is_reported_and_hardly_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock, answers, fsync = ManualClock(), Event(), os.fsync
@@ -206,7 +206,7 @@ def test_a_disk_that_hangs_is_stated_and_hardly_waited_for(
     assert payloads(tmp_path) == [b"1", b"2"]
 
 
-def test_little_room_on_the_disk_is_stated_and_is_no_failure(
+def test_low_disk_space_is_reported_and_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with recording(tmp_path) as recorder:
@@ -217,7 +217,7 @@ def test_little_room_on_the_disk_is_stated_and_is_no_failure(
         assert recorder.problem == ""
 
 
-def test_a_disk_that_does_not_say_how_much_room_it_has_is_written_all_the_same(
+def test_disk_of_unknown_free_space_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = Event()
@@ -237,7 +237,7 @@ def test_a_disk_that_does_not_say_how_much_room_it_has_is_written_all_the_same(
 
 @contextmanager
 def hanging_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
-    """Until the end of ``with``; notes how often it was asked."""
+    """A hanging disk until the end of ``with``; counts the calls."""
     answers, fsync, asked = Event(), os.fsync, [0]
 
     def hang(descriptor: int) -> None:
@@ -252,11 +252,11 @@ def hanging_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
         answers.set()
 
 
-def test_what_a_slow_disk_let_wait_reaches_it_together(
+def test_records_that_waited_for_a_slow_disk_are_written_together(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Brought to it half a second after half a second, a disk that takes longer for each would
-    fall behind for ever, and in the end be said not to answer.
+    """Written half a second after half a second, a disk that takes longer for each would fall
+    behind for ever, and in the end be reported as not answering.
     """
     with recording(tmp_path) as recorder:
         with hanging_disk(monkeypatch) as asked:
@@ -268,7 +268,7 @@ def test_what_a_slow_disk_let_wait_reaches_it_together(
         assert asked[0] <= 4
 
 
-def test_what_is_on_the_disk_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_durable_position_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with recording(tmp_path) as recorder:
         recorder.write(T0_NS, KEY, b"1", urgent=True)
         assert (recorder.written, recorder.on_disk) == (1, 1)
@@ -284,17 +284,17 @@ def test_what_is_on_the_disk_is_known(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def fill(recorder: Recorder, key: str = KEY) -> int:
-    """Until it is refused; how many were taken."""
+    """Write until a record is refused; returns the number of accepted records."""
     taken = 0
     while recorder.write(T0_NS + taken, f"{key[:-1]}{key[-1]}", os.urandom(60)):
         taken += 1
     return taken
 
 
-def test_what_waits_for_a_disk_takes_no_more_memory_than_it_may(
+def test_records_waiting_for_a_disk_take_bounded_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of small messages most is not their bytes."""
+    """Most of the size of small messages is not their bytes."""
     bound = 4_000_000
     policy = SegmentPolicy(waiting_bytes_max=bound)
     recorder = Recorder(tmp_path, SystemClock(), policy)
@@ -311,7 +311,7 @@ def test_what_waits_for_a_disk_takes_no_more_memory_than_it_may(
     recorder.close()
 
 
-def test_where_memory_is_full_there_is_room_for_alerts_and_then_for_what_people_do(
+def test_full_memory_has_room_for_alerts_and_then_for_actions_of_people(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=100_000))

@@ -1,4 +1,4 @@
-"""How much a unit is asked for follows how quickly it answers."""
+"""Adaptive chunk size: the size of a request to a unit follows the speed of its answers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from shared.clock import NS_PER_S
 
 
 @pytest.mark.parametrize("rate_bytes_s", [2_500.0, 12_500.0, 40_000.0])
-def test_answers_come_to_take_about_half_a_second(rate_bytes_s: float) -> None:
+def test_answers_approach_half_a_second(rate_bytes_s: float) -> None:
     pace = AdaptiveChunkSize()
     for _ in range(20):
         took_ns = round(pace.answer_bytes / rate_bytes_s * NS_PER_S)
@@ -17,7 +17,7 @@ def test_answers_come_to_take_about_half_a_second(rate_bytes_s: float) -> None:
     assert pace.answer_bytes / rate_bytes_s == pytest.approx(0.5, abs=0.1)
 
 
-def test_a_good_link_is_soon_asked_for_the_most() -> None:
+def test_good_link_soon_gets_the_largest_requests() -> None:
     pace = AdaptiveChunkSize()
     asked = []
     while pace.answer_bytes < MOST_BYTES:
@@ -27,7 +27,7 @@ def test_a_good_link_is_soon_asked_for_the_most() -> None:
     assert asked[0] == LEAST_BYTES
 
 
-def test_a_link_that_turns_thin_is_asked_for_less_and_never_for_nothing() -> None:
+def test_link_that_slows_down_gets_smaller_requests_and_never_empty_ones() -> None:
     pace = AdaptiveChunkSize()
     for _ in range(10):
         pace.note(pace.answer_bytes, 0)
@@ -39,22 +39,22 @@ def test_a_link_that_turns_thin_is_asked_for_less_and_never_for_nothing() -> Non
     assert pace.answer_bytes == LEAST_BYTES
 
 
-def test_a_link_is_asked_for_no_more_than_it_has_shown_to_carry() -> None:
-    """A message that was lost comes quickly over any link."""
+def test_request_never_exceeds_the_demonstrated_capacity() -> None:
+    """A single lost message comes quickly over any link."""
     pace = AdaptiveChunkSize()
     for _ in range(20):
         pace.note(100, 1_000_000)
     assert pace.answer_bytes == LEAST_BYTES
 
 
-def test_messages_that_are_smaller_than_was_expected_keep_no_link_slow() -> None:
+def test_messages_smaller_than_expected_keep_no_link_slow() -> None:
     pace = AdaptiveChunkSize()
     for _ in range(10):
         pace.note(round(0.3 * pace.answer_bytes), 1_000_000)
     assert pace.answer_bytes == MOST_BYTES
 
 
-def test_after_no_answer_it_begins_anew() -> None:
+def test_size_is_reset_after_no_answer() -> None:
     pace = AdaptiveChunkSize()
     pace.note(pace.answer_bytes, 0)
     pace.note_nothing()

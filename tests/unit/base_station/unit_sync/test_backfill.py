@@ -1,4 +1,6 @@
-"""The station fetches exactly what it lacks, once, and says what it has."""
+"""Backfill: the station fetches exactly the missing messages, once, and acknowledges what it
+has.
+"""
 
 from __future__ import annotations
 
@@ -34,13 +36,13 @@ BOOT = 77
 
 
 def tell(backfill: Backfill, report: Report, *, alerts_only: bool = False) -> None:
-    """Reports that come too quickly are taken together; each is to be looked at."""
+    """Reports in quick succession are merged; the test needs each of them."""
     backfill.report(report, alerts_only=alerts_only)
     until(lambda: backfill._report is None, "the report is looked at")
 
 
 def reported(number: int) -> bytes:
-    """Which message it is is all that counts here."""
+    """A message of which only the identity counts here."""
     return encode(Temperature(Header("FF-01", BOOT, number, number), 20.0))
 
 
@@ -79,7 +81,7 @@ class Bench:
 
     @property
     def totals(self) -> list[int]:
-        """How many bytes each question was for."""
+        """Bytes of each request."""
         asked = [dict(pair.split("=") for pair in one.split(";")) for one in self.questions]
         return [int(one["total"]) for one in asked]
 
@@ -98,7 +100,7 @@ def bench(tmp_path):
     bench.journal.close()
 
 
-def test_what_is_missing_comes_newest_gap_first_and_once(tmp_path):
+def test_missing_messages_come_newest_gap_first_and_once(tmp_path):
     bench = Bench(tmp_path, range(1, 21))
     for _ in range(4):
         bench.report(Run(1, 2), Run(6, 17))
@@ -111,14 +113,14 @@ def test_what_is_missing_comes_newest_gap_first_and_once(tmp_path):
     assert bench.backfill.fetched == 6
 
 
-def test_what_is_only_under_way_is_not_asked_for(bench):
+def test_messages_in_transit_are_not_requested(bench):
     bench.report(Run(1, 4), Run(6, 10))
     for _ in range(3):
         bench.report(Run(1, 10))
     assert bench.delivered == []
 
 
-def test_an_alert_is_fetched_though_the_stations_disk_takes_nothing(tmp_path):
+def test_alert_is_fetched_though_the_stations_disk_refuses_writes(tmp_path):
     bench = Bench(tmp_path, [1, 2, 3, 5, 6])
     bench.journal.append([JournalRow(4, EVENT, 4, reported(4))])
     for _ in range(4):
@@ -131,14 +133,14 @@ def test_an_alert_is_fetched_though_the_stations_disk_takes_nothing(tmp_path):
     assert (bench.questions, bench.acknowledged) == ([], [])
 
 
-def test_a_station_that_has_everything_says_so_to_the_unit(bench):
+def test_complete_station_acknowledges_to_the_unit(bench):
     for _ in range(3):
         bench.report(Run(1, 10))
     until(lambda: bench.journal.pending == 0)
 
 
-def test_a_unit_is_reported_nothing_to_forget_before_it_may(tmp_path):
-    """The standby has not got it, say."""
+def test_unit_gets_no_acknowledgement_before_it_is_allowed(tmp_path):
+    """The standby does not have the message, for example."""
     may_forget: list[bool] = []
     bench = Bench(tmp_path, range(1, 11), lambda: bool(may_forget))
     for _ in range(8):
@@ -151,8 +153,8 @@ def test_a_unit_is_reported_nothing_to_forget_before_it_may(tmp_path):
     bench.journal.close()
 
 
-def test_what_the_log_refused_is_asked_for_again_once_and_surely():
-    """Also where the next report came before anybody looked at the one that told of it."""
+def test_message_that_the_log_refused_is_requested_again_once():
+    """Also where the next report came before the one that reported it was handled."""
     backfill = Backfill(cast("Bus", StubBus()), lambda *_: None, ManualClock())
     starts_over: list[bool] = []
     for reports in (1, 2, 1, 1):
@@ -162,13 +164,13 @@ def test_what_the_log_refused_is_asked_for_again_once_and_surely():
     assert starts_over == [False, True, False, False]
 
 
-def test_a_boot_that_the_station_never_received_of_is_fetched(bench):
+def test_boot_without_received_messages_is_fetched(bench):
     for _ in range(3):
         tell(bench.backfill, {"FF-01": ()})
     until(lambda: sorted(bench.numbers) == list(range(1, 11)))
 
 
-def test_numbers_that_no_journal_has_are_counted_and_not_asked_for_again(tmp_path):
+def test_numbers_missing_in_the_journal_are_counted_and_not_requested_again(tmp_path):
     bench = Bench(tmp_path, [1, 2, 5, 6])
     for _ in range(5):
         bench.report(Run(1, 2))
@@ -185,7 +187,7 @@ def test_numbers_that_no_journal_has_are_counted_and_not_asked_for_again(tmp_pat
     bench.journal.close()
 
 
-def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(tmp_path):
+def test_first_request_is_small_and_later_ones_grow_with_quick_answers(tmp_path):
     bench = Bench(tmp_path, range(1, 301))
     for _ in range(4):
         bench.report(Run(1, 1))
@@ -198,8 +200,8 @@ def test_a_unit_is_asked_for_little_first_and_for_more_when_it_answers_at_once(t
     assert sorted(bench.numbers) == list(range(2, 301))
 
 
-def test_a_unit_that_was_out_of_reach_is_asked_for_little_first(tmp_path):
-    """Where it was well linked before, it may now be in a cellar."""
+def test_unit_back_from_a_lost_link_gets_a_small_request_first(tmp_path):
+    """Its link was good before, and may now be in a cellar."""
     bench = Bench(tmp_path, range(1, 301))
     for _ in range(4):
         bench.report(Run(1, 1))
@@ -216,7 +218,7 @@ def test_a_unit_that_was_out_of_reach_is_asked_for_little_first(tmp_path):
     assert bench.totals[before] == LEAST_BYTES
 
 
-def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):
+def test_alert_comes_before_the_backlog_that_contains_it(tmp_path):
     bench = Bench(tmp_path, [1])
     entries = [JournalRow(n, POSITION, n, reported(n)) for n in range(2, 1001)]
     entries[498] = JournalRow(500, EVENT, 500, reported(500))
@@ -231,14 +233,14 @@ def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):
 
 
 class StubBus:
-    """Answers when the test says so."""
+    """A bus that answers when the test lets it."""
 
     def __init__(self) -> None:
-        self.asked: dict[str, ReplyHandler] = {}  # by unit; what is under way
+        self.asked: dict[str, ReplyHandler] = {}  # by unit; requests in progress
         self.most = 0
         self.questions: list[tuple[str, str]] = []
         self.first_asked: dict[str, int] = {}  # sequence number, by unit
-        self.newest_asked: list[int] = []  # runs, in questions for an index
+        self.newest_asked: list[int] = []  # runs in an index request
 
     def ask(self, selector, payload, timeout_s, on_reply, *, urgent=False):
         unit_id, what = selector.split("/")[2], selector.split("/")[4].partition("?")[0]
@@ -282,14 +284,14 @@ def crowd():
     backfill.close()
 
 
-def test_what_is_small_is_asked_of_all_at_once_and_backlogs_of_some(crowd):
+def test_small_requests_go_to_all_at_once_and_backlogs_to_some(crowd):
     bus, _ = crowd
     assert [what for _, what in bus.questions[:80]] == ["index"] * 40 + ["urgent"] * 40
     until(lambda: len(bus.asked) == AT_ONCE)
     assert {what for _, what in bus.questions[80:]} == {"range"}
 
 
-def test_units_take_turns_and_one_that_is_silent_holds_up_none(crowd):
+def test_units_take_turns_and_a_silent_one_delays_none(crowd):
     bus, _ = crowd
     until(lambda: len(bus.asked) == AT_ONCE)
     silent = next(iter(bus.asked))
@@ -305,7 +307,7 @@ def test_units_take_turns_and_one_that_is_silent_holds_up_none(crowd):
     assert max(turns.values()) - min(turns.values()) <= 1
 
 
-def test_a_unit_that_does_not_answer_is_asked_again_at_the_next_report(crowd):
+def test_unit_without_answer_is_asked_again_at_the_next_report(crowd):
     bus, report = crowd
     until(lambda: len(bus.asked) == AT_ONCE)
     unit_id = next(iter(bus.asked))
@@ -321,7 +323,7 @@ def test_a_unit_that_does_not_answer_is_asked_again_at_the_next_report(crowd):
     assert bus.questions.count((unit_id, "range")) == before + 1
 
 
-def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
+def test_alert_overtakes_answers_that_wait_for_delivery():
     bus, go, delivered = StubBus(), Event(), []
 
     def deliver(key: str, payload: bytes) -> None:
@@ -358,8 +360,8 @@ def test_an_alert_overtakes_answers_that_wait_to_be_handed_over():
     assert delivered == [b"old", b"fall", b"old too"]
 
 
-def test_how_quickly_a_unit_says_what_it_has_is_a_matter_of_the_link_alone():
-    """While the station hands over what came of others, too."""
+def test_answer_time_of_a_unit_depends_on_its_link_alone():
+    """While the station also delivers answers of others."""
     handing_over, is_done = Event(), Event()
 
     def deliver(_key: str, _payload: bytes) -> None:
@@ -392,7 +394,7 @@ def test_how_quickly_a_unit_says_what_it_has_is_a_matter_of_the_link_alone():
     assert bus.newest_asked == [32, 32, 64]
 
 
-def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
+def test_message_without_header_is_identified_by_its_key(tmp_path):
     bench = Bench(tmp_path, [1])
     rotten = {2: b"rotten", 3: reported(77), 4: b""}
     bench.journal.append([JournalRow(n, POSITION, n, rotten[n]) for n in rotten])
@@ -405,7 +407,7 @@ def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
     assert keys == {("FF-01", BOOT, n): rotten[n] for n in rotten}
 
 
-def test_what_a_unit_answers_far_beyond_what_was_asked_is_not_kept(monkeypatch):
+def test_answer_far_beyond_the_request_is_not_kept(monkeypatch):
     monkeypatch.setattr("base_station.unit_sync.backfill._LEAST_KEPT_BYTES", 1000)
     monkeypatch.setattr("base_station.unit_sync.backfill._MOST_CAME", 1)
     bus, delivered = StubBus(), []
@@ -427,7 +429,7 @@ def test_what_a_unit_answers_far_beyond_what_was_asked_is_not_kept(monkeypatch):
     assert bus.first_asked["A"] == len(delivered) + 1
 
 
-def test_units_that_are_silent_when_asked_for_alerts_keep_no_backlog_from_coming():
+def test_units_silent_on_alert_requests_block_no_backlog():
     bus = StubBus()
     backfill = Backfill(cast("Bus", bus), lambda *_: None, ManualClock())
     backfill.start()
@@ -448,7 +450,7 @@ def test_units_that_are_silent_when_asked_for_alerts_keep_no_backlog_from_coming
     backfill.close()
 
 
-def test_a_bus_that_fails_once_ends_no_backfill(monkeypatch):
+def test_single_failure_of_the_bus_ends_no_backfill(monkeypatch):
     bus, failures = StubBus(), [RuntimeError("can't start new thread")]
     ask = bus.ask
 

@@ -1,4 +1,4 @@
-"""What the journals may forget is what is on the station's disk."""
+"""Acknowledged messages, which the journals may delete, are on the station's disk."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Disk:
 @pytest.mark.parametrize(
     ("on_disk", "is_there"), [(0, False), (9, False), (10, True), (20, True), (30, True)]
 )
-def test_what_the_report_before_the_last_reported_of_is_on_the_disk(on_disk, is_there):
+def test_report_before_the_last_is_on_the_disk(on_disk, is_there):
     disk = Disk()
     reports = DurableAckGate(disk)
     for written in (5, 10, 20):
@@ -28,7 +28,7 @@ def test_what_the_report_before_the_last_reported_of_is_on_the_disk(on_disk, is_
     assert reports.previous_report_is_durable() is is_there
 
 
-def test_before_there_are_two_reports_nothing_is_known():
+def test_before_two_reports_nothing_is_known():
     disk = Disk(5, 5)
     reports = DurableAckGate(disk)
     assert not reports.previous_report_is_durable()

@@ -1,4 +1,4 @@
-"""A journal that brings more than its unit can have said is fetched slowly, and named."""
+"""A journal that delivers more than its unit can have sent is fetched slowly, and reported."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Watch:
     def fetch(
         self, seconds: int, messages: int, size: int, alerts: int = 0, *, urgent: bool = False
     ) -> tuple[int, int]:
-        """How many messages, and bytes, come from a journal that always has more."""
+        """Messages, and bytes, fetched from a journal that always has more."""
         count = total = 0
         for _ in range(10 * seconds):
             self.clock.advance(0.1)
@@ -38,14 +38,14 @@ class Watch:
         return [(part, bool(text)) for part, text in reports]
 
 
-def test_what_a_unit_says_in_an_hour_comes_at_once() -> None:
+def test_messages_of_an_hour_are_fetched_at_once() -> None:
     watch = Watch()
     count, _ = watch.fetch(18, 1000, 200)
     assert count == 180_000
     assert watch.changes() == []
 
 
-def test_beyond_that_it_is_fetched_no_faster_than_a_unit_may_speak() -> None:
+def test_excess_is_fetched_no_faster_than_a_unit_may_send() -> None:
     watch = Watch()
     count, _ = watch.fetch(600, 2000, 10)
     assert MESSAGES_AT_ONCE < count < MESSAGES_AT_ONCE + 600 * MESSAGES_HZ + 2000
@@ -59,8 +59,8 @@ def test_large_messages_count_by_their_bytes() -> None:
     assert total < BYTES_AT_ONCE + 60 * BYTES_PER_S + 480_000
 
 
-def test_whatever_comes_when_alerts_are_asked_for_counts_as_alerts() -> None:
-    """Positions of a journal that says of them that they are urgent were not bounded at all."""
+def test_all_answers_to_an_alert_request_count_as_alerts() -> None:
+    """Positions of a journal that marks them as urgent were not bounded at all."""
     count, _ = Watch().fetch(60, 10, 100, urgent=True)
     assert ALERTS_AT_ONCE < count < ALERTS_AT_ONCE + 60 * ALERTS_HZ + 10
 
@@ -70,7 +70,7 @@ def test_alerts_are_bounded_in_bytes_too() -> None:
     assert total < URGENT_BYTES_AT_ONCE + 60 * URGENT_BYTES_PER_S + 500_000
 
 
-def test_alerts_count_by_themselves_and_an_empty_share_of_others_holds_up_none() -> None:
+def test_alerts_count_separately_and_an_empty_share_of_others_delays_none() -> None:
     watch = Watch()
     count, _ = watch.fetch(60, 10, 100, alerts=10)
     assert ALERTS_AT_ONCE < count <= ALERTS_AT_ONCE + 60 * ALERTS_HZ + 10
@@ -80,7 +80,7 @@ def test_alerts_count_by_themselves_and_an_empty_share_of_others_holds_up_none()
     assert watch.share.may_ask("evil", urgent=True)
 
 
-def test_it_is_reported_with_its_name_while_it_lasts() -> None:
+def test_ban_is_reported_with_its_name_while_it_lasts() -> None:
     watch = Watch()
     watch.fetch(60, 100_000, 10)
     [(part, is_reported)] = watch.changes()

@@ -1,4 +1,4 @@
-"""What a damaged log lacks of what had come is asked for again, and nothing else."""
+"""Messages missing in a damaged log are requested again, and no others."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def spoken(seq: int, sender: str = UNIT) -> LogRecord:
 
 
 class Damaged:
-    """A log of which ten messages of the unit and ten of its agent had come."""
+    """A log that had ten messages of the unit and ten of its agent."""
 
     def __init__(self) -> None:
         self.clock = ManualClock()
@@ -60,7 +60,7 @@ class Damaged:
         return self.read()
 
     def look(self) -> None:
-        """For a while, in which the station's state is saved."""
+        """Time in which the station's state is saved."""
         for _ in range(20):
             self.search.look()
             self.clock.advance(1.0)
@@ -72,7 +72,7 @@ def damaged() -> Damaged:
     return Damaged()
 
 
-def test_what_is_missing_is_taken_back_once(damaged: Damaged) -> None:
+def test_missing_messages_are_marked_once(damaged: Damaged) -> None:
     damaged.log = [one for one in damaged.log if one not in map(spoken, (3, 4, 8))]
     damaged.log.remove(spoken(10, AGENT))
     damaged.damaged = ["1.mcap"]
@@ -84,7 +84,7 @@ def test_what_is_missing_is_taken_back_once(damaged: Damaged) -> None:
     assert len(damaged.taken_back) == 1
 
 
-def test_each_new_damage_is_looked_into(damaged: Damaged) -> None:
+def test_each_new_damage_is_examined(damaged: Damaged) -> None:
     damaged.damaged = ["1.mcap"]
     damaged.look()
     assert damaged.taken_back == []
@@ -94,13 +94,13 @@ def test_each_new_damage_is_looked_into(damaged: Damaged) -> None:
     assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
 
 
-def test_a_log_that_is_whole_is_not_read(damaged: Damaged) -> None:
+def test_whole_log_is_not_read(damaged: Damaged) -> None:
     damaged.look()
     assert damaged.readings == 0
 
 
-def test_it_waits_for_a_state_that_was_saved_since(damaged: Damaged) -> None:
-    """What came behind an older one would be missing in it and not in the log."""
+def test_check_waits_for_a_state_saved_since(damaged: Damaged) -> None:
+    """Messages behind an older one would be missing in it and not in the log."""
     damaged.damaged = ["1.mcap"]
     for _ in range(5):
         damaged.search.look()
@@ -113,10 +113,12 @@ def test_it_waits_for_a_state_that_was_saved_since(damaged: Damaged) -> None:
     [
         (0, backfilled_key(UNIT, POSITION.suffix), spoken(3)[2]),
         (0, unread_key(UNIT, BOOT, 3, POSITION.suffix), b"of a newer program"),
-        (0, IMU.key(UNIT), spoken(3)[2]),  # what nobody can read has a number all the same
+        (0, IMU.key(UNIT), spoken(3)[2]),  # an unreadable message has a number all the same
     ],
 )
-def test_however_it_came_it_is_there(damaged: Damaged, found: LogRecord) -> None:
+def test_message_counts_as_present_by_any_way_of_reception(
+    damaged: Damaged, found: LogRecord
+) -> None:
     damaged.log[damaged.log.index(spoken(3))] = found
     damaged.damaged = ["1.mcap"]
     damaged.look()
@@ -124,7 +126,7 @@ def test_however_it_came_it_is_there(damaged: Damaged, found: LogRecord) -> None
     assert damaged.taken_back == []
 
 
-def test_a_file_that_goes_while_it_is_read_is_read_again(damaged: Damaged) -> None:
+def test_file_changed_during_reading_is_read_again(damaged: Damaged) -> None:
     def breaks_off() -> Iterator[LogRecord]:
         damaged.read = lambda: damaged.log[1:]
         yield damaged.log[1]
@@ -137,7 +139,7 @@ def test_a_file_that_goes_while_it_is_read_is_read_again(damaged: Damaged) -> No
     assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
 
 
-def test_a_long_log_is_read_in_turns(damaged: Damaged) -> None:
+def test_long_log_is_read_in_turns(damaged: Damaged) -> None:
     taken: list[LogRecord] = []
 
     def slowly() -> Iterator[LogRecord]:

@@ -1,4 +1,4 @@
-"""What a unit's journal has of alerts is asked for before anything else, and once."""
+"""Alerts of a unit's journal are requested before anything else, and once."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from shared.sequence_set import Run, SequenceSet
 from tests.rig.asked_journal import BOOT, answer, asked_of, indexed, journal_of, next_of
 
 
-def test_alerts_are_asked_for_at_once_over_the_whole_of_what_is_missing() -> None:
+def test_alerts_are_requested_at_once_over_all_missing_numbers() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), Run(61, 70))
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 60)
 
 
-def test_an_alert_that_may_still_be_under_way_is_waited_for() -> None:
+def test_alert_that_may_be_in_transit_is_waited_for() -> None:
     journal = journal_of(Run(1, 70), last=100)
     assert journal.next_question() is None
 
 
-def test_the_alerts_among_the_last_words_of_a_run_come_before_any_backlog() -> None:
-    """A fall in the dark, the unit starts again, and then the link returns."""
+def test_alerts_at_the_end_of_a_run_come_before_any_backlog() -> None:
+    """A fall without a link, the unit restarts, and then the link returns."""
     ended, running = Held(BOOT, (Run(1, 70),)), Held(8, (Run(1, 5), Run(500, 510)))
     journal = JournalClient()
     journal.report((ended,), 0)
@@ -34,7 +34,7 @@ def test_the_alerts_among_the_last_words_of_a_run_come_before_any_backlog() -> N
     assert len(asked) > 2, "and the rest behind them"
 
 
-def test_alerts_are_asked_for_once() -> None:
+def test_alerts_are_requested_once() -> None:
     journal = journal_of(Run(1, 10), Run(61, 70), last=70)
     question = journal.next_question()
     assert question is not None
@@ -48,7 +48,7 @@ def test_alerts_are_asked_for_once() -> None:
     assert next_of(journal)[0] == "range"
 
 
-def test_what_the_alerts_brought_is_not_fetched_again() -> None:
+def test_messages_fetched_as_alerts_are_not_fetched_again() -> None:
     journal = journal_of(Run(1, 18), Run(21, 21), last=21)
     question = journal.next_question()
     assert question is not None
@@ -59,8 +59,8 @@ def test_what_the_alerts_brought_is_not_fetched_again() -> None:
     assert (what, asked["from"], asked["to"]) == ("range", 19, 19)
 
 
-def test_what_a_unit_wrote_does_not_wait_for_what_its_disk_does_not_take() -> None:
-    """It was said in the dark on a disk that is full: the journal cannot give it for now."""
+def test_written_messages_do_not_wait_for_unwritten_ones() -> None:
+    """They were sent without a link on a full disk: the journal cannot give them for now."""
     held = (Held(BOOT, (Run(1, 10), Run(91, 100))),)
     journal = journal_of(*held[0].runs, last=100)
     written, came, unanswered = 60, SequenceSet(), []

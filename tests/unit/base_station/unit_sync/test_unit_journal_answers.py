@@ -1,4 +1,4 @@
-"""Which answers of a unit's journal are believed and kept, and who gives none."""
+"""Answers of a unit's journal: which are accepted and kept, and units that give none."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from shared.sequence_set import Run
 from tests.rig.asked_journal import BOOT, answer, indexed, journal_of
 
 
-def test_who_does_not_answer_is_not_asked_before_the_next_report() -> None:
+def test_unit_without_answer_is_not_asked_before_the_next_report() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), last=30)
     question = journal.next_question()
     assert question is not None
@@ -21,7 +21,7 @@ def test_who_does_not_answer_is_not_asked_before_the_next_report() -> None:
     assert journal.next_question() == question
 
 
-def test_an_answer_to_another_question_is_not_believed() -> None:
+def test_answer_to_another_request_is_refused() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30))
     question = journal.next_question()
     assert question is not None
@@ -39,8 +39,8 @@ def test_an_answer_to_another_question_is_not_believed() -> None:
 
 
 @pytest.mark.parametrize("what", ["index", "urgent", "range"])
-def test_who_answers_nonsense_is_not_asked_before_the_next_report(what: str) -> None:
-    """Or the two would go on as fast as the link carries it."""
+def test_unit_with_invalid_answers_is_not_asked_before_the_next_report(what: str) -> None:
+    """Otherwise both would repeat as fast as the link carries it."""
     held = (Held(BOOT, (Run(1, 10), Run(21, 30))),)
     journal = JournalClient()
     journal.report(held, 0)
@@ -60,7 +60,7 @@ def test_who_answers_nonsense_is_not_asked_before_the_next_report(what: str) -> 
     assert journal.next_question() == question
 
 
-def test_of_an_answer_only_what_is_missing_is_kept() -> None:
+def test_only_missing_messages_of_an_answer_are_kept() -> None:
     journal = journal_of(Run(1, 10), Run(13, 14), Run(17, 30), last=30)
     held = Held(BOOT, (Run(1, 10), Run(13, 14), Run(17, 30)))
     question = journal.next_question()

@@ -1,4 +1,4 @@
-"""Which runs of a unit's program its journal is asked about, and when it is asked what it has."""
+"""Index requests: which runs of a unit's program its journal is asked about, and when."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from shared.sequence_set import Run
 from tests.rig.asked_journal import BOOT, answer, asked_of, indexed, journal_of, next_of
 
 
-def test_a_unit_that_has_started_again_is_asked_at_once_what_it_has() -> None:
+def test_restarted_unit_is_asked_at_once() -> None:
     journal = journal_of(Run(1, 100))
     journal.report((Held(BOOT, (Run(1, 100),)), Held(8, (Run(5, 5),))), 1)
     assert next_of(journal)[0] == "index"
 
 
-def test_what_it_has_is_asked_now_and_then() -> None:
+def test_index_is_requested_now_and_then() -> None:
     journal = journal_of(Run(1, 100))
     held = (Held(BOOT, (Run(1, 100),)),)
     journal.report(held, 29 * NS_PER_S)
@@ -25,8 +25,8 @@ def test_what_it_has_is_asked_now_and_then() -> None:
     assert next_of(journal)[0] == "index"
 
 
-def test_a_run_of_which_the_journal_has_nothing_left_has_it_asked_no_more_often() -> None:
-    """What is said of many runs once a second takes a good part of a thin link, for ever."""
+def test_run_without_journal_content_causes_no_further_requests() -> None:
+    """An index of many runs once a second takes a good part of a thin link, for ever."""
     journal = JournalClient()
     held = (Held(3, (Run(1, 10),)), Held(BOOT, (Run(1, 10),)))
     journal.report(held, 0)
@@ -37,7 +37,7 @@ def test_a_run_of_which_the_journal_has_nothing_left_has_it_asked_no_more_often(
     assert next_of(journal)[0] == "index"
 
 
-def test_a_run_that_is_not_on_the_units_disk_yet_is_asked_for_again_and_again() -> None:
+def test_run_not_on_the_units_disk_yet_is_requested_again_and_again() -> None:
     journal = JournalClient()
     held = (Held(3, (Run(1, 10),)), Held(BOOT, (Run(1, 10),)))
     journal.report(held, 0)
@@ -47,7 +47,7 @@ def test_a_run_that_is_not_on_the_units_disk_yet_is_asked_for_again_and_again() 
     assert next_of(journal)[0] == "index"
 
 
-def test_a_run_that_the_journal_has_no_more_is_not_asked_for() -> None:
+def test_run_deleted_from_the_journal_is_not_requested() -> None:
     journal = JournalClient()
     for first, due_ns in ((1, 0), (2, 3600 * 10**9)):
         journal.report((Held(3, (Run(1, 10),)),), due_ns)
@@ -56,7 +56,7 @@ def test_a_run_that_the_journal_has_no_more_is_not_asked_for() -> None:
     assert {question["epoch"] for question in asked_of(journal)} == {2}
 
 
-def test_of_two_machines_under_one_name_both_journals_are_known() -> None:
+def test_both_journals_of_two_machines_under_one_name_are_known() -> None:
     journal = JournalClient()
     held = Held(BOOT, (Run(1, 10),)), Held(8, (Run(1, 4), Run(7, 8)))
     journal.report(held, 0)
@@ -69,7 +69,7 @@ def test_of_two_machines_under_one_name_both_journals_are_known() -> None:
     assert (what, asked["epoch"], asked["from"], asked["to"]) == ("urgent", 8, 5, 6)
 
 
-def test_of_any_number_of_runs_the_newest_are_asked_for() -> None:
+def test_newest_of_any_number_of_runs_are_requested() -> None:
     journal = JournalClient()
     journal.report((Held(BOOTS_KEPT + 5, (Run(1, 3),)),), 0)
     indexed(journal, *(JournalBoot(number, 1, 3, 0, 0) for number in range(1, BOOTS_KEPT + 6)))
@@ -89,7 +89,7 @@ MANY = 300
 
 
 def index_named(journal: JournalClient, took_ns: int) -> int:
-    """How many runs are asked for of a unit that has started ``MANY`` times, and answers so."""
+    """Number of runs requested of a unit that has started ``MANY`` times, and answers so."""
     question = journal.next_question()
     assert question is not None
     assert question.what == "index"
@@ -102,18 +102,18 @@ def index_named(journal: JournalClient, took_ns: int) -> int:
 
 
 def fetched(journal: JournalClient) -> list[int]:
-    """Of which runs everything is fetched, in turn."""
+    """Runs of which everything is fetched, in order."""
     return list(dict.fromkeys(question["epoch"] for question in asked_of(journal)))
 
 
-def test_of_a_unit_that_has_started_often_more_is_asked_as_the_link_carries_it() -> None:
-    """What it has of thousands of runs takes a thin link down, and alerts wait behind it."""
+def test_index_of_a_unit_with_many_starts_grows_as_the_link_carries_it() -> None:
+    """An index of thousands of runs blocks a thin link, and alerts wait behind it."""
     journal, held = JournalClient(), (Held(MANY, (Run(1, 3),)),)
     asked, epochs = [], []
     for second in range(5):
         journal.report(held, second * NS_PER_S)
         asked.append(index_named(journal, NS_PER_S // 100))
-        journal.report(held, second * NS_PER_S)  # what is missing has had the time to come
+        journal.report(held, second * NS_PER_S)  # missing messages have had the time to come
         epochs += fetched(journal)
     assert asked == [32, 64, 128, 256, 512]
     assert epochs == list(range(MANY - 1, 0, -1)), "the newest first, each once"
@@ -121,7 +121,7 @@ def test_of_a_unit_that_has_started_often_more_is_asked_as_the_link_carries_it()
     assert next_of(journal)[0] == "acknowledge", "that is all of them"
 
 
-def test_over_a_thin_link_few_are_asked_for_and_those_that_are_known_stay_known() -> None:
+def test_thin_link_gets_few_index_requests_and_known_runs_stay_known() -> None:
     journal, held = JournalClient(), (Held(MANY, (Run(1, 3),)),)
     journal.report(held, 0)
     asked = [index_named(journal, NS_PER_S // 100)]

@@ -1,4 +1,4 @@
-"""What is missing of a unit's messages, and in which pieces its journal is asked for it."""
+"""Missing numbers of a unit's messages, and the pieces in which its journal is asked for them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.rig.asked_journal import (
 )
 
 
-def test_a_hole_is_found_by_what_came_behind_it() -> None:
+def test_gap_is_found_by_a_later_message() -> None:
     journal = journal_of(Run(1, 100), last=100)
     for number in range(2):
         journal.report((Held(BOOT, (Run(1, 100), Run(151, 160))),), number)
@@ -26,7 +26,7 @@ def test_a_hole_is_found_by_what_came_behind_it() -> None:
     assert (first["from"], first["to"]) == (101, 150)
 
 
-def test_what_the_journal_has_no_more_is_not_asked_for() -> None:
+def test_messages_deleted_from_the_journal_are_not_requested() -> None:
     journal = JournalClient()
     held = (Held(BOOT, (Run(90, 100),)),)
     journal.report(held, 0)
@@ -37,7 +37,7 @@ def test_what_the_journal_has_no_more_is_not_asked_for() -> None:
     assert max(one["to"] for one in asked) == 89
 
 
-def test_a_unit_that_fell_silent_is_asked_for_little_again() -> None:
+def test_unit_that_fell_silent_gets_small_requests_again() -> None:
     held = (Held(BOOT, (Run(1, 1),)),)
     journal = journal_of(Run(1, 1), last=100_000)
     totals = []
@@ -64,7 +64,7 @@ def test_a_unit_that_fell_silent_is_asked_for_little_again() -> None:
 
 
 def after_single_losses(last: int) -> JournalClient:
-    """Many a message was lost by itself and fetched at once; then an outage until ``last``."""
+    """Many single losses, each fetched at once; then an outage until ``last``."""
     held = SequenceSet([1], [200])
     for lost in range(10, 200, 10):
         held.discard(lost)
@@ -87,8 +87,8 @@ def after_single_losses(last: int) -> JournalClient:
     return journal
 
 
-def test_after_many_small_losses_a_long_outage_is_asked_for_in_little_first() -> None:
-    """That one message came quickly does not say that a thin link carries half a megabyte."""
+def test_first_request_of_a_long_outage_is_small_after_many_single_losses() -> None:
+    """One quick message does not show that a thin link carries half a megabyte."""
     journal = after_single_losses(5000)
     question = journal.next_question() or Question("none")
     answer(journal, question, JournalChunk(BOOT, 201, 4999, (), urgent_only=True))
@@ -96,14 +96,14 @@ def test_after_many_small_losses_a_long_outage_is_asked_for_in_little_first() ->
     assert (what, asked["to"], asked["total"]) == ("range", 4999, LEAST_BYTES)
 
 
-def test_many_numbers_that_the_journal_has_no_more_are_asked_about_in_few_questions() -> None:
+def test_many_missing_numbers_are_asked_about_in_few_requests() -> None:
     held = Held(BOOT, (Run(1, 1), Run(200_001, 200_001)))
     journal = journal_of(*held.runs, last=200_001)
     journal.report((held,), 1)
     assert len(asked_in_turn(journal, held, 100)) < 50
 
 
-def test_the_newest_piece_is_asked_for_first() -> None:
+def test_newest_piece_is_requested_first() -> None:
     journal = journal_of(Run(1, 1), last=1000)
     journal.report((Held(BOOT, (Run(1, 1),)),), 1)
     question = journal.next_question()
@@ -114,7 +114,7 @@ def test_the_newest_piece_is_asked_for_first() -> None:
     assert 1 < asked["from"] < 1000
 
 
-def test_the_first_message_of_a_run_may_be_under_way_like_any_other() -> None:
+def test_first_message_of_a_run_may_be_in_transit_like_any_other() -> None:
     held = (Held(BOOT, (Run(2, 2),)),)
     journal = journal_of(Run(2, 2), last=2)
     question = journal.next_question() or Question("none")
@@ -124,7 +124,7 @@ def test_the_first_message_of_a_run_may_be_under_way_like_any_other() -> None:
     assert next_of(journal)[0] == "range"
 
 
-def test_how_much_is_asked_for_follows_from_how_large_messages_are() -> None:
+def test_number_of_requested_messages_follows_from_their_size() -> None:
     def numbers_of_a_piece(payload: bytes) -> int:
         held = Held(BOOT, (Run(1, 1),))
         journal = journal_of(Run(1, 1), last=100_000)
@@ -138,7 +138,7 @@ def test_how_much_is_asked_for_follows_from_how_large_messages_are() -> None:
             question = journal.next_question()
             assert question is not None
             journal.take(question, chunk.to_bytes(), 1)
-            journal.end(question, NS_PER_S // 2)  # as long as is wanted: no more, no less
+            journal.end(question, NS_PER_S // 2)  # exactly the wanted length
         return asked["to"] - asked["from"] + 1
 
     small, large = numbers_of_a_piece(bytes(20)), numbers_of_a_piece(bytes(500))
@@ -146,7 +146,7 @@ def test_how_much_is_asked_for_follows_from_how_large_messages_are() -> None:
     assert large < small / 3
 
 
-def test_what_came_behind_all_that_the_journal_reported_of_has_its_holes_filled() -> None:
+def test_gaps_behind_the_journals_index_are_filled() -> None:
     journal = journal_of(Run(1, 100), last=100)
     held = Held(BOOT, (Run(1, 100), Run(151, 160)))
     journal.report((held,), 1)
@@ -154,8 +154,8 @@ def test_what_came_behind_all_that_the_journal_reported_of_has_its_holes_filled(
     assert (pieces[-1][0], pieces[0][1]) == (101, 150)
 
 
-def test_many_small_holes_are_asked_about_together() -> None:
-    """As a journal has them that gave up what was of least worth: after a restart of the station
+def test_many_small_gaps_are_asked_about_together() -> None:
+    """A journal that dropped its least valuable messages has them: after a restart of the station
     they are all missing again.
     """
     held = Held(BOOT, tuple(Run(5 * n + 1, 5 * n + 3) for n in range(10_000)))
@@ -170,7 +170,7 @@ def test_many_small_holes_are_asked_about_together() -> None:
     assert all(number in missing for number in range(4, 49_998, 5))
 
 
-def test_what_is_there_between_two_holes_is_not_asked_for_again_unless_it_is_little() -> None:
+def test_messages_between_two_gaps_are_fetched_again_only_if_they_are_few() -> None:
     held = Held(BOOT, (Run(1, 10), Run(13, 40), Run(43, 46), Run(49, 60)))
     journal = JournalClient()
     journal.report((held,), 0)

@@ -1,4 +1,4 @@
-"""What a unit's journal is told it may forget, and what it is asked for again."""
+"""Acknowledgements to a unit's journal of messages that it may delete, and repeated requests."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.rig.asked_journal import (
 
 
 @pytest.mark.parametrize("reports", [1, 2, 3])
-def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -> None:
+def test_complete_run_is_acknowledged_when_it_is_on_the_disk(reports: int) -> None:
     journal = journal_of(Run(1, 100))
     for number in range(1, reports):
         journal.report((Held(BOOT, (Run(1, 100 + number),)),), number)
@@ -37,7 +37,7 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
     assert journal.next_question() is None
 
 
-def test_what_a_unit_goes_on_saying_is_acknowledged_now_and_then() -> None:
+def test_current_run_is_acknowledged_now_and_then() -> None:
     """Each answer names all runs of the journal: every second that is much for a thin link."""
     journal, last = JournalClient(), 100
     journal.report((Held(BOOT, (Run(1, last),)),), 0)
@@ -56,7 +56,7 @@ def test_what_a_unit_goes_on_saying_is_acknowledged_now_and_then() -> None:
     assert acknowledged == [2, 12, 22]
 
 
-def test_runs_that_are_over_are_each_acknowledged_at_once() -> None:
+def test_ended_runs_are_each_acknowledged_at_once() -> None:
     held = tuple(Held(number, (Run(1, 10),)) for number in range(1, 6))
     journal = JournalClient()
     journal.report(held, 0)
@@ -72,15 +72,15 @@ def test_runs_that_are_over_are_each_acknowledged_at_once() -> None:
     assert acknowledged == [5, 4, 3, 2, 1]
 
 
-def test_a_run_of_a_single_message_is_acknowledged_too() -> None:
+def test_run_of_a_single_message_is_acknowledged_too() -> None:
     journal = journal_of(Run(1, 1), last=1)
     for number in range(1, 3):
         journal.report((Held(BOOT, (Run(1, 1),)),), number)
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 1, "newest": 0})
 
 
-def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() -> None:
-    """Or it would give up what nobody has, for what the station has had for long."""
+def test_journal_that_dropped_its_beginning_may_still_delete_safe_messages() -> None:
+    """Otherwise it would drop messages that nobody has, and keep those of the station."""
     journal = JournalClient()
     held = (Held(BOOT, (Run(51, 100),)),)
     journal.report(held, 0)
@@ -91,7 +91,7 @@ def test_a_journal_that_gave_up_its_beginning_may_still_forget_what_is_safe() ->
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 100, "newest": 0})
 
 
-def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
+def test_lost_numbers_are_counted_and_count_as_complete() -> None:
     journal = journal_of(Run(1, 4), Run(8, 8), last=8)
     question = journal.next_question()
     assert question is not None
@@ -108,7 +108,7 @@ def test_numbers_that_nobody_has_are_counted_and_count_as_complete() -> None:
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 8, "newest": 0})
 
 
-def test_what_was_fetched_is_safe_once_it_is_reported_and_no_sooner() -> None:
+def test_fetched_message_is_safe_once_it_is_reported_and_no_sooner() -> None:
     """It may wait a while to be written."""
     journal, before = journal_of(Run(1, 10), last=12), (Held(BOOT, (Run(1, 10),)),)
     entries = tuple(JournalEntry(number, "up/position", b"") for number in (11, 12))
@@ -127,7 +127,7 @@ def test_what_was_fetched_is_safe_once_it_is_reported_and_no_sooner() -> None:
     assert next_of(journal) == ("acknowledge", {"epoch": BOOT, "to": 12, "newest": 0})
 
 
-def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> None:
+def test_fetched_message_missing_in_the_log_is_requested_again() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), last=30)
     for what in ("urgent", "range", "range"):
         journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 1)
@@ -138,14 +138,14 @@ def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> 
         answer(journal, question, chunk)
     for _ in range(5):
         journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 2)
-    assert next_of(journal)[0] == "acknowledge"  # nobody has them
+    assert next_of(journal)[0] == "acknowledge"  # lost everywhere
     journal.start_over()
     journal.report((Held(BOOT, (Run(1, 10), Run(21, 30))),), 3)
     what, asked = next_of(journal)
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
 
 
-def test_nothing_is_ordered_to_be_safe_before_it_is_reported_anew() -> None:
+def test_no_message_is_safe_before_a_new_report() -> None:
     journal = journal_of(Run(1, 10), last=20)
     held = (Held(BOOT, (Run(1, 10),)),)
     asked_in_turn(journal, held[0], 20)
@@ -157,7 +157,7 @@ def test_nothing_is_ordered_to_be_safe_before_it_is_reported_anew() -> None:
     assert journal.next_question() is None  # the log may have refused these, too
 
 
-def test_while_the_disk_takes_nothing_only_alerts_are_asked_for_and_nothing_is_safe() -> None:
+def test_full_disk_fetches_only_alerts_and_acknowledges_nothing() -> None:
     journal = journal_of(Run(1, 10), Run(21, 30), last=30)
     held = (Held(BOOT, (Run(1, 10), Run(21, 30))),)
     for number in range(5):
@@ -177,7 +177,7 @@ def test_while_the_disk_takes_nothing_only_alerts_are_asked_for_and_nothing_is_s
     assert next_of(journal)[0] == "range"
 
 
-def test_what_was_complete_in_memory_only_is_no_report_that_counts() -> None:
+def test_report_of_messages_in_memory_alone_does_not_count() -> None:
     journal = journal_of(Run(1, 100))
     held = (Held(BOOT, (Run(1, 100),)),)
     for number in range(1, 5):

@@ -1,4 +1,4 @@
-"""An alarm leaves the station as a code and parameters, with people's names in them."""
+"""Alarms leave the station as a code and parameters, with people's names in them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def logged(payload: bytes) -> AlarmView:
     return alarm_view(change, people)
 
 
-def test_names_are_put_in_live_stored_and_recorded() -> None:
+def test_names_are_inserted_live_stored_and_recorded() -> None:
     shown = AlarmParametersView(member="Ana", duration_s=30.0)
     live = logged(encode(CHANGE))
     assert (live.code, live.parameters) == ("no-motion", shown)
@@ -48,7 +48,7 @@ def test_names_are_put_in_live_stored_and_recorded() -> None:
     assert played == live
 
 
-def test_only_what_is_in_the_sentence_is_sent() -> None:
+def test_only_parameters_of_the_sentence_are_sent() -> None:
     sent = msgspec.json.decode(msgspec.json.encode(alarm_view(CHANGE, people)))
     assert sent["parameters"] == {"member": "Ana", "duration_s": 30.0}
 

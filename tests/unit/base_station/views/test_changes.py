@@ -1,4 +1,4 @@
-"""Several messages of changed fields as one: whoever gets that one ends with the same picture."""
+"""Merge of several messages of changed fields: the result gives the same picture."""
 
 from __future__ import annotations
 
@@ -38,9 +38,7 @@ def reported(*units: UnitView) -> list[FieldDelta]:
 
 
 @given(st.lists(_SEEN, min_size=2, max_size=6), st.integers(0, 5))
-def test_one_message_changes_a_unit_as_those_that_it_was_made_of(
-    seen: list[UnitView], begin: int
-) -> None:
+def test_merged_message_changes_a_unit_like_its_parts(seen: list[UnitView], begin: int) -> None:
     messages = reported(*seen)
     begin = min(begin, len(messages) - 1)
     one = merged(messages[begin:])
@@ -51,7 +49,7 @@ def test_one_message_changes_a_unit_as_those_that_it_was_made_of(
     assert (one.after_seq, one.seq) == (begin, len(messages))
 
 
-def test_what_is_reported_whole_is_as_it_was_reported_last() -> None:
+def test_complete_values_are_those_of_the_last_message() -> None:
     pins = (scenes.pin("p", 0, "used", 1.0, ""),)
     raised, resolved = (
         msgspec.structs.replace(scenes.alarm(0, "mayday", 1, "", 0), state=state)

@@ -1,4 +1,4 @@
-"""What cards and commands show of outputs that notify a wearer."""
+"""Notification of wearers on cards and commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ U = "FF-01"
 def sent(
     kind: CommandKind = CommandKind.EVACUATE, outputs: tuple[str, ...] | None = None
 ) -> Script:
-    """A command to one unit, which has described itself where ``outputs`` are given."""
+    """A command to one unit, which has described its outputs where ``outputs`` are given."""
     script = Script()
     script.register(U)
     if outputs is not None:
@@ -30,7 +30,7 @@ def sent(
 @pytest.mark.parametrize(
     ("outputs", "shown"), [(None, None), ((), False), (("speech",), True)]
 )  # fmt: skip
-def test_a_card_and_a_command_show_whether_the_unit_can_notify(
+def test_card_and_command_show_whether_the_unit_can_notify(
     outputs: tuple[str, ...] | None, shown: bool | None
 ) -> None:
     script = sent(outputs=outputs)
@@ -42,7 +42,7 @@ def test_a_card_and_a_command_show_whether_the_unit_can_notify(
     assert [one.can_be_notified for one in view.units] == [shown]
 
 
-def test_a_command_shows_when_the_wearer_was_notified() -> None:
+def test_command_shows_when_the_wearer_was_notified() -> None:
     script = sent(CommandKind.LOCATE, ("led",))
     script.now_s += 1.0
     script.reply(U, "c1", CommandState.NOTIFIED)

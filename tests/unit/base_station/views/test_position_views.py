@@ -22,7 +22,7 @@ def shown(script: Script) -> PositionView:
 
 
 @pytest.mark.parametrize("planned", [True, False])
-def test_the_height_of_the_floor_is_the_plan_s_or_learnt(planned: bool) -> None:
+def test_height_of_a_floor_is_that_of_the_plan_or_learnt(planned: bool) -> None:
     script = Script()
     script.register(U)
     if planned:

@@ -1,4 +1,4 @@
-"""What a unit has found at its start, as the console shows it."""
+"""Findings of a unit's start check, as the console shows them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_findings_are_one_text(
     assert card.preflight == shown
 
 
-def test_a_unit_that_has_not_described_itself_has_not_checked_itself() -> None:
+def test_unit_without_description_has_no_findings() -> None:
     script = Script()
     script.register(U)
     state = script.pipeline.state

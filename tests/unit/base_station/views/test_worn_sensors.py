@@ -1,4 +1,4 @@
-"""Sensors of a unit and where they are worn, on the card and in the tables."""
+"""Sensors of a unit and their places on the body, on the card and in the tables."""
 
 from __future__ import annotations
 

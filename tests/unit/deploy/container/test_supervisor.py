@@ -62,7 +62,7 @@ def supervised(
             running.kill()
 
 
-def test_a_service_is_healthy_from_ready_to_its_end_in_order(tmp_path: Path) -> None:
+def test_service_is_healthy_from_ready_to_its_end_in_order(tmp_path: Path) -> None:
     with supervised(tmp_path, sys.executable, "-c", SERVICE) as running:
         until(lambda: not health.fault(tmp_path / "muster"), "the service is healthy")
         running.send_signal(signal.SIGTERM)
@@ -71,7 +71,7 @@ def test_a_service_is_healthy_from_ready_to_its_end_in_order(tmp_path: Path) -> 
     assert running.returncode == 7
 
 
-def test_a_service_that_starts_is_not_healthy_yet(tmp_path: Path) -> None:
+def test_starting_service_is_not_healthy_yet(tmp_path: Path) -> None:
     with supervised(tmp_path, sys.executable, "-c", SERVICE, "starts", watchdog_s=0.2) as running:
         assert running.stdout is not None
         assert running.stdout.readline() == "begun\n"
@@ -80,7 +80,7 @@ def test_a_service_that_starts_is_not_healthy_yet(tmp_path: Path) -> None:
         assert running.wait(timeout=120) == 7
 
 
-def test_a_service_that_hangs_is_killed_and_named(tmp_path: Path) -> None:
+def test_hanging_service_is_killed_and_named(tmp_path: Path) -> None:
     with supervised(tmp_path, sys.executable, "-c", SERVICE, watchdog_s=3.0) as running:
         until(lambda: not health.fault(tmp_path / "muster"), "the service is healthy")
         _, error = running.communicate("hang\n", timeout=120)
@@ -96,7 +96,7 @@ def test_silence_is_named_by_the_health_check(tmp_path: Path, monkeypatch) -> No
     assert health.fault(tmp_path) == "it hangs: nothing came from it for 20 s"
 
 
-def test_a_command_gives_its_output_and_its_exit_code(tmp_path: Path) -> None:
+def test_command_passes_its_output_and_its_exit_code(tmp_path: Path) -> None:
     with supervised(tmp_path, "sh", "-c", "echo done; exit 3") as running:
         output, error = running.communicate(timeout=120)
     assert (output, error, running.returncode) == ("done\n", "", 3)
@@ -128,7 +128,7 @@ def test_secrets_of_the_engine_are_copied_to_where_one_user_reads_them(tmp_path:
     assert (output, error) == ("600 password\ngenerated\n", "")
 
 
-def test_a_program_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_missing_program_is_named(tmp_path: Path) -> None:
     with supervised(tmp_path, "no-such-program") as running:
         _, error = running.communicate(timeout=120)
     assert running.returncode == 1

@@ -1,4 +1,4 @@
-"""Posture by the inclinations of trunk, thigh and shank, on simulated bodies."""
+"""Posture from the inclinations of trunk, thigh and shank, on simulated bodies."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def push(
             estimator.push(place, body.samples[place].part(slice(first, first + rows)))
 
 
-def test_three_sensors_tell_each_posture(bodies: Sequence[PosedBody]) -> None:
+def test_three_sensors_distinguish_each_posture(bodies: Sequence[PosedBody]) -> None:
     table, reports = confusion(ALL, bodies)
     for posture in POSTURES:
         assert share(table, posture, posture) > 0.85, posture
     assert np.mean([right for _, right in reports]) > 0.95
 
 
-def test_a_trunk_alone_tells_how_one_lies_and_leaves_open_how_one_is_upright(
+def test_trunk_alone_gives_the_lying_side_and_not_the_upright_posture(
     bodies: Sequence[PosedBody],
 ) -> None:
     table, _ = confusion(("chest",), bodies)
@@ -59,7 +59,7 @@ def test_a_trunk_alone_tells_how_one_lies_and_leaves_open_how_one_is_upright(
     assert bent > 0.5, "between upright and prone it is a matter of degrees"
 
 
-def test_a_leg_alone_tells_kneeling_crawling_and_lying(bodies: Sequence[PosedBody]) -> None:
+def test_leg_alone_gives_kneeling_crawling_and_lying(bodies: Sequence[PosedBody]) -> None:
     table, _ = confusion(("thigh", "shank"), bodies)
     for posture in (
         BodyPosture.KNEELING,
@@ -77,7 +77,7 @@ def test_noise_of_poor_sensors_changes_little() -> None:
     assert np.mean([right for _, right in reports]) > 0.95
 
 
-def test_what_is_reported_with_confidence_is_right(bodies: Sequence[PosedBody]) -> None:
+def test_confident_posture_is_correct(bodies: Sequence[PosedBody]) -> None:
     for places in (("chest",), ("chest", "thigh"), ALL):
         _, reports = confusion(places, bodies)
         sure = [right for confidence, right in reports if confidence > 0.9]
@@ -85,13 +85,13 @@ def test_what_is_reported_with_confidence_is_right(bodies: Sequence[PosedBody]) 
         assert np.mean(sure) > 0.9
 
 
-def test_nothing_is_stated_before_anyone_has_walked() -> None:
+def test_no_posture_is_stated_before_the_first_walk() -> None:
     body = posed_body([Act(BodyPosture.SUPINE, 20.0)], np.random.default_rng(1))
     estimator = pushed(body)
     assert estimator.posture(int(body.t_ns[-1])) == (BodyPosture.UNKNOWN, 0.0)
 
 
-def test_a_given_mounting_tells_before_anyone_has_walked() -> None:
+def test_given_mounting_gives_a_posture_before_the_first_walk() -> None:
     rng = np.random.default_rng(2)
     turned = Rotation.random(random_state=rng)
     body = posed_body([Act(BodyPosture.SUPINE, 20.0)], rng, mounts={"chest": turned})
@@ -102,7 +102,7 @@ def test_a_given_mounting_tells_before_anyone_has_walked() -> None:
     assert confidence > 0.8
 
 
-def test_a_wrong_mounting_is_put_right_by_walking() -> None:
+def test_wrong_mounting_is_corrected_by_walking() -> None:
     rng = np.random.default_rng(3)
     turned = Rotation.random(random_state=rng)
     walk = [Act(BodyPosture.STANDING, 30.0, walks=True), Act(BodyPosture.LEFT_SIDE, 15.0)]
@@ -113,7 +113,7 @@ def test_a_wrong_mounting_is_put_right_by_walking() -> None:
     assert estimator.posture(int(body.t_ns[-1]))[0] is BodyPosture.LEFT_SIDE
 
 
-def test_a_change_is_reported_within_three_seconds() -> None:
+def test_change_is_reported_within_three_seconds() -> None:
     acts = [
         Act(BodyPosture.STANDING, 15.0, walks=True),
         Act(BodyPosture.STANDING, 10.0),
@@ -123,7 +123,7 @@ def test_a_change_is_reported_within_three_seconds() -> None:
     assert pushed(body).posture(int(body.t_ns[-1]))[0] is BodyPosture.SUPINE
 
 
-def test_a_sensor_that_falls_silent_is_left_out_and_all_of_them_say_nothing() -> None:
+def test_silent_sensor_is_left_out_and_no_sensor_gives_no_posture() -> None:
     acts = [Act(BodyPosture.STANDING, 15.0, walks=True), Act(BodyPosture.SITTING, 20.0)]
     body = posed_body(acts, np.random.default_rng(5))
     estimator = BodyPostureEstimator()
@@ -147,7 +147,7 @@ def test_any_batching_gives_the_same() -> None:
     assert one.posture(end_ns)[1] == pytest.approx(other.posture(end_ns)[1])
 
 
-def test_a_foot_and_missed_samples_tell_nothing() -> None:
+def test_foot_and_missing_samples_give_no_posture() -> None:
     body = posed_body([Act(BodyPosture.STANDING, 12.0, walks=True)], np.random.default_rng(6))
     estimator = BodyPostureEstimator()
     estimator.push("foot", body.samples["shank"])
@@ -159,7 +159,7 @@ def test_a_foot_and_missed_samples_tell_nothing() -> None:
     assert estimator.mobility(int(body.t_ns[-1])) is Mobility.UNKNOWN
 
 
-def test_a_trunk_tells_a_walk_a_turn_and_a_rest() -> None:
+def test_trunk_distinguishes_walk_turn_and_rest() -> None:
     acts = [Act(BodyPosture.STANDING, 20.0, walks=True), Act(BodyPosture.STANDING, 8.0)]
     body = posed_body(acts, np.random.default_rng(7))
     estimator = BodyPostureEstimator()

@@ -1,4 +1,4 @@
-"""A drop, a blow, and nobody who walks on: where each of them begins and ends."""
+"""Falls: begin and end of a drop, a blow and the time without walking."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WEIGHT_MPS2 = 9.81
 
 
 class Wearer:
-    """Feels one force after another, each in a batch of its own."""
+    """Applies one force after another, each in a batch of its own."""
 
     def __init__(self) -> None:
         self.falls = FallDetector()
@@ -41,7 +41,7 @@ class Wearer:
             self.falls.walk(Stride(end_ns, 0.9, 1.3, 0.0, np.array([0.0, 0.0, 1.0])))
 
     def confirmed(self, motionless_s: float, *, lying: bool = False) -> bool:
-        """By the next half second."""
+        """Fall confirmed by the next half second."""
         return self.falls.confirm(motionless_s, lying=lying)
 
 
@@ -61,7 +61,7 @@ def fallen(wearer: Wearer) -> Wearer:
     ("force_mps2", "duration_s", "falls"),
     [(3.5, 0.3, True), (4.5, 0.3, False), (0.5, 0.28, True), (0.5, 0.24, False)],
 )
-def test_a_drop_is_a_quarter_of_a_second_with_hardly_any_weight(
+def test_drop_is_a_quarter_of_a_second_with_hardly_any_weight(
     wearer: Wearer, force_mps2: float, duration_s: float, falls: bool
 ) -> None:
     wearer.drops(force_mps2, duration_s)
@@ -74,7 +74,7 @@ def test_a_drop_is_a_quarter_of_a_second_with_hardly_any_weight(
     ("force_mps2", "after_s", "falls"),
     [(35.0, 0.0, True), (25.0, 0.0, False), (60.0, 0.4, True), (60.0, 0.6, False)],
 )
-def test_the_blow_is_three_times_the_weight_and_follows_at_once(
+def test_blow_is_three_times_the_weight_and_follows_at_once(
     wearer: Wearer, force_mps2: float, after_s: float, falls: bool
 ) -> None:
     wearer.drops()
@@ -85,7 +85,7 @@ def test_the_blow_is_three_times_the_weight_and_follows_at_once(
 
 @pytest.mark.parametrize("stood_s", [0.02, 0.2])
 def test_two_hops_are_no_drop(wearer: Wearer, stood_s: float) -> None:
-    """Between them the foot stood, in a batch that has nothing else in it."""
+    """Between them the foot stood, in a batch without other samples."""
     wearer.drops(duration_s=0.2)
     wearer.feels(WEIGHT_MPS2, stood_s)
     wearer.drops(duration_s=0.2)
@@ -93,7 +93,7 @@ def test_two_hops_are_no_drop(wearer: Wearer, stood_s: float) -> None:
     assert not wearer.falls.falling
 
 
-def test_who_stirs_for_some_seconds_and_then_lies_still_has_fallen(fallen: Wearer) -> None:
+def test_motion_for_some_seconds_and_then_stillness_is_a_fall(fallen: Wearer) -> None:
     for _ in range(14):
         assert not fallen.confirmed(0.0)
         assert fallen.falls.falling
@@ -101,20 +101,20 @@ def test_who_stirs_for_some_seconds_and_then_lies_still_has_fallen(fallen: Weare
     assert fallen.confirmed(2.0)
 
 
-def test_a_fall_is_confirmed_once(fallen: Wearer) -> None:
+def test_fall_is_confirmed_once(fallen: Wearer) -> None:
     assert fallen.confirmed(2.0)
     assert not fallen.falls.falling
     assert not fallen.confirmed(2.5)
 
 
-def test_who_still_moves_after_eight_seconds_got_up(fallen: Wearer) -> None:
+def test_motion_after_eight_seconds_is_no_fall(fallen: Wearer) -> None:
     for _ in range(17):
         assert not fallen.confirmed(0.0)
     assert not fallen.falls.falling
     assert not fallen.confirmed(30.0), "resting, a minute later"
 
 
-def test_after_another_blow_the_seconds_begin_anew(fallen: Wearer) -> None:
+def test_another_blow_restarts_the_seconds(fallen: Wearer) -> None:
     for _ in range(10):
         fallen.confirmed(0.0)
     fallen.drops()
@@ -124,7 +124,7 @@ def test_after_another_blow_the_seconds_begin_anew(fallen: Wearer) -> None:
     assert fallen.confirmed(2.0)
 
 
-def test_samples_that_say_nothing_are_neither_drop_nor_blow(wearer: Wearer) -> None:
+def test_missing_values_are_neither_drop_nor_blow(wearer: Wearer) -> None:
     wearer.drops()
     wearer.strikes(float("nan"))
     assert not wearer.falls.falling
@@ -132,7 +132,7 @@ def test_samples_that_say_nothing_are_neither_drop_nor_blow(wearer: Wearer) -> N
     assert wearer.falls.falling, "the drop was no less one"
 
 
-def test_a_sample_that_was_missed_does_not_make_two_hops_of_a_drop(wearer: Wearer) -> None:
+def test_missing_sample_does_not_split_a_drop_into_two_hops(wearer: Wearer) -> None:
     wearer.drops(duration_s=0.15)
     wearer.feels(float("nan"), 0.02)
     wearer.drops(duration_s=0.15)
@@ -141,7 +141,7 @@ def test_a_sample_that_was_missed_does_not_make_two_hops_of_a_drop(wearer: Weare
 
 
 @pytest.mark.parametrize("batched", [False, True])
-def test_what_was_not_received_is_no_drop(wearer: Wearer, batched: bool) -> None:
+def test_missing_samples_are_no_drop(wearer: Wearer, batched: bool) -> None:
     """A foot in mid swing weighs nothing for a moment; then the samples stop for a while."""
     wearer.drops(duration_s=0.02)
     if batched:
@@ -154,7 +154,7 @@ def test_what_was_not_received_is_no_drop(wearer: Wearer, batched: bool) -> None
 
 
 @pytest.mark.parametrize(("missed_s", "falls"), [(0.08, True), (0.1, False)])
-def test_a_tenth_of_a_second_at_most_is_missed_of_a_drop(
+def test_tenth_of_a_second_at_most_may_be_missing_in_a_drop(
     wearer: Wearer, missed_s: float, falls: bool
 ) -> None:
     wearer.drops(duration_s=0.15)
@@ -164,7 +164,7 @@ def test_a_tenth_of_a_second_at_most_is_missed_of_a_drop(
     assert wearer.falls.falling is falls
 
 
-def test_a_drop_that_was_half_received_is_one_if_that_half_was_long_enough(wearer: Wearer) -> None:
+def test_half_received_drop_counts_if_that_half_was_long_enough(wearer: Wearer) -> None:
     wearer.drops(duration_s=0.02)
     wearer.now_s += 0.5
     wearer.drops(duration_s=0.3)
@@ -173,7 +173,7 @@ def test_a_drop_that_was_half_received_is_one_if_that_half_was_long_enough(weare
 
 
 @pytest.mark.parametrize(("strides", "falls"), [(0, True), (1, True), (2, False)])
-def test_who_walks_on_after_the_blow_and_then_stands_still_has_jumped(
+def test_walking_after_the_blow_and_standing_is_a_jump(
     fallen: Wearer, strides: int, falls: bool
 ) -> None:
     fallen.walks(strides)
@@ -181,14 +181,14 @@ def test_who_walks_on_after_the_blow_and_then_stands_still_has_jumped(
     assert fallen.confirmed(2.0) is falls
 
 
-def test_who_walks_on_after_the_blow_and_then_lies_has_fallen(fallen: Wearer) -> None:
+def test_walking_after_the_blow_and_lying_is_a_fall(fallen: Wearer) -> None:
     fallen.walks(3)
     assert not fallen.confirmed(1.5, lying=True)
     assert fallen.confirmed(2.0, lying=True)
 
 
-def test_strides_up_to_the_blow_are_not_walking_on(wearer: Wearer) -> None:
-    """A tracker tells them up to a second late."""
+def test_strides_before_the_blow_are_no_walking_after_it(wearer: Wearer) -> None:
+    """A tracker reports them up to a second late."""
     ends_s = 9.0, 10.5, 10.9  # the blow is at 10.4 s, and each began before it
     before = [Stride(round(t_s * NS_PER_S), 0.9, 1.3, 0.0, np.zeros(3)) for t_s in ends_s]
     wearer.drops()
@@ -198,7 +198,7 @@ def test_strides_up_to_the_blow_are_not_walking_on(wearer: Wearer) -> None:
     assert wearer.confirmed(2.0)
 
 
-def test_after_another_blow_nobody_has_walked_on_yet(fallen: Wearer) -> None:
+def test_another_blow_resets_the_walking(fallen: Wearer) -> None:
     fallen.walks(2)
     fallen.drops()
     fallen.strikes()

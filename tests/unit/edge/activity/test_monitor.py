@@ -1,4 +1,4 @@
-"""What strides, rests and blows say of the wearer: where one kind ends and the next begins."""
+"""Activity of the wearer from strides, rests and blows: where one kind ends and the next begins."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ TIPPED_DEG = 80.0
 
 
 def pitched(angle_deg: float) -> tuple[float, float, float]:
-    """Where up is in sensor axes of a foot with its toes so far down; level: along -z."""
+    """Direction of up in the sensor axes of a foot with its toes this far down; level: along -z."""
     angle_rad = math.radians(angle_deg)
     return -math.sin(angle_rad), 0.0, -math.cos(angle_rad)
 
 
 class Wearer:
-    """Does one thing after another; the unit is told of it at once."""
+    """One motion after another; the unit gets each at once."""
 
     def __init__(self, stands_s: float = 3.0) -> None:
         self.monitor = ActivityMonitor()
         self.now_s = 100.0
         self.falls = 0
-        self._height_m = 0.0  # by the air
+        self._height_m = 0.0  # by pressure
         if stands_s:
             self.rests(stands_s)
 
@@ -64,7 +64,7 @@ class Wearer:
         angle_deg: float = 0.0,
         climbed_m: float | None = None,
     ) -> None:
-        """``climbed_m``: what a barometer shows of each stride; None: there is none."""
+        """``climbed_m``: the climb of each stride by barometer; None: there is none."""
         for _ in range(count):
             began_s, before_m = self.now_s, self._height_m
             self._feels(period_s, 9.81, angle_deg, 1.0, (before_m, climbed_m))
@@ -79,7 +79,7 @@ class Wearer:
             self._height_m += climbed_m or 0.0
 
     def is_stated_to_step(self, ago_s: float, angle_deg: float = 0.0) -> None:
-        """The tracker lost a stance while the foot rested."""
+        """The tracker missed a stance while the foot rested."""
         lifted_s = self.now_s - ago_s
         rows = [(lifted_s, 0.0, True), (lifted_s + 0.1, 0.0, False), (lifted_s + 0.5, 0.0, True)]
         self.falls += self.monitor.push(_nothing(), self._rows(rows, 0.0, 0.0, angle_deg))
@@ -166,7 +166,7 @@ def test_running_is_fast_or_quick_with_strides_of_some_length(
         (-0.23, 1.0, Activity.WALKING),
     ],
 )
-def test_stairs_are_steeper_than_ramps_and_higher_than_what_lies_about(
+def test_stairs_are_steeper_than_ramps_and_higher_than_obstacles(
     wearer: Wearer, rise_m: float, length_m: float, kind: Activity
 ) -> None:
     wearer.strides(4, length_m, rise_m=rise_m)
@@ -174,27 +174,27 @@ def test_stairs_are_steeper_than_ramps_and_higher_than_what_lies_about(
 
 
 @pytest.mark.parametrize(("climbed_m", "kind"), [(0.14, Activity.STAIRS_UP), (0.06, None)])
-def test_the_air_must_have_risen_by_a_third_of_what_the_strides_did(
+def test_pressure_must_show_a_third_of_the_climb_of_the_strides(
     wearer: Wearer, climbed_m: float, kind: Activity | None
 ) -> None:
     wearer.strides(8, 0.6, rise_m=0.34, climbed_m=climbed_m)
     assert wearer.output() is (kind or Activity.WALKING)
 
 
-def test_of_less_than_a_metre_the_air_knows_nothing(wearer: Wearer) -> None:
+def test_pressure_does_not_judge_less_than_a_metre(wearer: Wearer) -> None:
     wearer.strides(3, 0.6, rise_m=0.34, climbed_m=0.0)
     assert wearer.output() is Activity.STAIRS_UP
     wearer.strides(2, 0.6, rise_m=0.34, climbed_m=0.0)
     assert wearer.output() is Activity.WALKING
 
 
-def test_who_turns_round_on_the_stairs_is_judged_by_what_came_after(wearer: Wearer) -> None:
+def test_turn_on_the_stairs_is_judged_by_the_later_part(wearer: Wearer) -> None:
     wearer.strides(8, 0.6, rise_m=0.34, climbed_m=0.34)
     wearer.strides(4, 0.6, rise_m=-0.34, climbed_m=0.0)
     assert wearer.output() is Activity.WALKING, "the tracker sinks and the air does not"
 
 
-def test_on_a_landing_the_flight_before_is_over(wearer: Wearer) -> None:
+def test_flight_ends_on_a_landing(wearer: Wearer) -> None:
     wearer.strides(5, 0.6, rise_m=0.34, climbed_m=0.34)
     wearer.strides(3, 1.2, climbed_m=0.0)
     assert wearer.output() is Activity.WALKING
@@ -203,7 +203,7 @@ def test_on_a_landing_the_flight_before_is_over(wearer: Wearer) -> None:
 
 
 @pytest.mark.parametrize(("length_m", "kind"), [(11.0, Activity.RUNNING), (13.0, None)])
-def test_a_tracker_that_is_lost_makes_no_runner(
+def test_lost_tracker_makes_no_runner(
     wearer: Wearer, length_m: float, kind: Activity | None
 ) -> None:
     wearer.strides(3, 1.3)
@@ -220,13 +220,13 @@ def test_one_tipped_step_is_a_stumble_and_two_are_crawling(wearer: Wearer) -> No
     assert stated == [Activity.RUNNING, Activity.CRAWLING]
 
 
-def test_who_crawls_on_the_balls_of_the_feet_crawls(wearer: Wearer) -> None:
+def test_crawling_on_the_balls_of_the_feet_is_crawling(wearer: Wearer) -> None:
     """Fifty degrees are more than a shoe rolls in a stride and less than a foot that lies."""
     wearer.strides(4, 0.4, angle_deg=50.0)
     assert wearer.output() is Activity.CRAWLING
 
 
-def test_who_crawls_goes_on_crawling_after_a_rest_and_lies_after_a_long_one(
+def test_crawling_continues_after_a_rest_and_becomes_lying_after_a_long_one(
     wearer: Wearer,
 ) -> None:
     wearer.strides(5, 0.4, angle_deg=TIPPED_DEG)
@@ -237,7 +237,7 @@ def test_who_crawls_goes_on_crawling_after_a_rest_and_lies_after_a_long_one(
     assert stated == [Activity.CRAWLING, Activity.CRAWLING, Activity.LYING]
 
 
-def test_a_foot_that_is_put_up_and_rests_is_neither_crawling_nor_lying_at_once(
+def test_raised_resting_foot_is_neither_crawling_nor_lying_at_once(
     wearer: Wearer,
 ) -> None:
     wearer.stirs(3.0, TIPPED_DEG)
@@ -249,7 +249,7 @@ def test_a_foot_that_is_put_up_and_rests_is_neither_crawling_nor_lying_at_once(
     assert stated == [Activity.CRAWLING, Activity.STILL, Activity.LYING]
 
 
-def test_a_foot_that_rests_for_a_second_has_stopped(wearer: Wearer) -> None:
+def test_foot_at_rest_for_a_second_has_stopped(wearer: Wearer) -> None:
     wearer.strides(5, 1.3)
     wearer.rests(0.8)
     assert wearer.output() is Activity.WALKING
@@ -259,7 +259,7 @@ def test_a_foot_that_rests_for_a_second_has_stopped(wearer: Wearer) -> None:
     assert wearer.cadence_hz() == 0.0
 
 
-def test_who_stirs_for_a_second_walks_before_the_first_stride_is_known(wearer: Wearer) -> None:
+def test_motion_of_a_second_is_walking_before_the_first_stride(wearer: Wearer) -> None:
     wearer.stirs(0.8)
     assert wearer.output() is Activity.STILL
     wearer.stirs(0.8)
@@ -268,22 +268,22 @@ def test_who_stirs_for_a_second_walks_before_the_first_stride_is_known(wearer: W
     assert wearer.output() is Activity.STILL
 
 
-def test_who_is_received_in_mid_walk_walks_and_before_that_nobody_knows() -> None:
+def test_first_samples_in_mid_walk_are_walking_and_unknown_before() -> None:
     wearer = Wearer(stands_s=0.0)
     assert wearer.output() is Activity.UNKNOWN
     wearer.stirs(1.6)
     assert wearer.output() is Activity.WALKING
 
 
-def test_two_seconds_without_samples_and_nobody_knows(wearer: Wearer) -> None:
-    """Of the last half second nothing is known before it is over."""
+def test_activity_is_unknown_after_two_seconds_without_samples(wearer: Wearer) -> None:
+    """Nothing is known of the last half second before its end."""
     wearer.now_s += 1.4
     assert wearer.output() is Activity.STILL
     wearer.now_s += 0.2
     assert wearer.output() is Activity.UNKNOWN
 
 
-def test_the_cadence_is_that_of_the_last_four_seconds(wearer: Wearer) -> None:
+def test_cadence_is_that_of_the_last_four_seconds(wearer: Wearer) -> None:
     wearer.strides(10, 1.3)
     assert wearer.cadence_hz() == pytest.approx(2.0)
     wearer.strides(4, 1.0, period_s=0.8)
@@ -291,7 +291,7 @@ def test_the_cadence_is_that_of_the_last_four_seconds(wearer: Wearer) -> None:
     assert wearer.monitor.steps == 28
 
 
-def test_a_blow_after_a_drop_is_one_fall_however_the_foot_comes_to_lie(wearer: Wearer) -> None:
+def test_blow_after_a_drop_is_one_fall_in_any_final_posture(wearer: Wearer) -> None:
     wearer.falls_down()
     wearer.stirs(0.5, 70.0, 3.0)
     assert wearer.output() is Activity.FALLING
@@ -300,7 +300,7 @@ def test_a_blow_after_a_drop_is_one_fall_however_the_foot_comes_to_lie(wearer: W
     assert wearer.output() is Activity.LYING
 
 
-def test_who_gets_up_and_falls_again_has_fallen_twice(wearer: Wearer) -> None:
+def test_second_fall_after_getting_up_counts(wearer: Wearer) -> None:
     for _ in range(2):
         wearer.falls_down()
         wearer.rests(5.0, 90.0)
@@ -310,7 +310,7 @@ def test_who_gets_up_and_falls_again_has_fallen_twice(wearer: Wearer) -> None:
 
 
 @pytest.mark.parametrize(("still_s", "falls"), [(3.4, 0), (4.6, 1), (30.0, 1)])
-def test_who_went_down_suddenly_has_fallen_after_four_seconds_without_a_motion(
+def test_sudden_descent_is_a_fall_after_four_seconds_without_motion(
     wearer: Wearer, still_s: float, falls: int
 ) -> None:
     wearer.stirs(1.0, 70.0, 3.0)
@@ -318,7 +318,7 @@ def test_who_went_down_suddenly_has_fallen_after_four_seconds_without_a_motion(
     assert wearer.falls == falls
 
 
-def test_who_stands_for_long_or_lies_down_has_not_fallen(wearer: Wearer) -> None:
+def test_long_standing_and_lying_down_are_no_fall(wearer: Wearer) -> None:
     wearer.rests(30.0)
     wearer.stirs(2.0, 70.0, 1.0)
     wearer.rests(30.0, 90.0)
@@ -326,7 +326,7 @@ def test_who_stands_for_long_or_lies_down_has_not_fallen(wearer: Wearer) -> None
     assert wearer.falls == 0
 
 
-def test_who_has_collapsed_is_falling_until_it_is_lying(wearer: Wearer) -> None:
+def test_collapsed_wearer_is_falling_until_lying(wearer: Wearer) -> None:
     wearer.stirs(1.0, 85.0, 3.0)
     stated = []
     for _ in range(3):
@@ -335,7 +335,7 @@ def test_who_has_collapsed_is_falling_until_it_is_lying(wearer: Wearer) -> None:
     assert stated == [Activity.STILL, Activity.FALLING, Activity.LYING]
 
 
-def test_who_jumps_from_the_engine_walks_on_and_stands_has_not_fallen(wearer: Wearer) -> None:
+def test_jump_from_the_engine_is_no_fall(wearer: Wearer) -> None:
     wearer.falls_down()
     stated = [wearer.output()]
     wearer.strides(3, 1.3)
@@ -351,7 +351,7 @@ def test_who_jumps_from_the_engine_walks_on_and_stands_has_not_fallen(wearer: We
     [(0.7, 0.0), (1.3, TIPPED_DEG), (13.0, 0.0)],
     ids=["stumbles on", "is dragged away", "a tracker that is lost"],
 )
-def test_only_long_strides_on_ones_feet_show_that_one_has_got_up(
+def test_only_long_strides_on_the_feet_show_getting_up(
     wearer: Wearer, length_m: float, angle_deg: float
 ) -> None:
     wearer.falls_down()
@@ -360,7 +360,7 @@ def test_only_long_strides_on_ones_feet_show_that_one_has_got_up(
     assert wearer.falls == 1
 
 
-def test_who_walks_some_steps_after_a_blow_and_lies_down_has_fallen(wearer: Wearer) -> None:
+def test_some_steps_after_a_blow_and_lying_down_is_a_fall(wearer: Wearer) -> None:
     wearer.falls_down()
     wearer.strides(2, 1.3)
     wearer.stirs(1.0, 80.0)
@@ -368,7 +368,7 @@ def test_who_walks_some_steps_after_a_blow_and_lies_down_has_fallen(wearer: Wear
     assert wearer.falls == 1
 
 
-def test_a_stride_in_which_nothing_moved_is_none(wearer: Wearer) -> None:
+def test_stride_without_motion_does_not_count(wearer: Wearer) -> None:
     wearer.strides(2, 1.3)
     for _ in range(3):
         wearer.rests(2.5)
@@ -379,19 +379,19 @@ def test_a_stride_in_which_nothing_moved_is_none(wearer: Wearer) -> None:
     assert wearer.monitor.steps == 6
 
 
-def test_a_stride_that_is_reported_before_any_motion_could_be_seen_is_one() -> None:
+def test_stride_reported_before_its_motion_could_be_seen_counts() -> None:
     wearer = Wearer(stands_s=0.0)
     wearer.is_stated_to_step(ago_s=1.0)
     assert wearer.monitor.steps == 2
 
 
-def test_who_has_stood_since_the_start_has_made_no_stride() -> None:
+def test_standing_since_the_start_has_no_strides() -> None:
     wearer = Wearer(stands_s=4.0)
     wearer.is_stated_to_step(ago_s=2.0)
     assert wearer.monitor.steps == 0
 
 
-def test_who_kneels_for_a_while_and_then_crawls_is_ordered_to_crawl(wearer: Wearer) -> None:
+def test_kneeling_and_then_crawling_is_crawling(wearer: Wearer) -> None:
     wearer.stirs(1.0, TIPPED_DEG)
     wearer.rests(3.0, TIPPED_DEG)
     stated = [wearer.output()]

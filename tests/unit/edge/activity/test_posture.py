@@ -1,4 +1,4 @@
-"""How the foot is held: standing, tipped over, lying, on hands and knees, gone down suddenly."""
+"""Posture of a foot: standing, tipped, lying, crawling, collapsed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KNEELING_DEG, ON_THE_BACK_DEG = 80.0, -90.0
 
 
 class Foot:
-    """Held at an angle to standing, half a second at a time."""
+    """A foot held at an angle to standing, half a second at a time."""
 
     def __init__(self, stands_s: float = 1.0) -> None:
         self.posture = Posture()
@@ -55,7 +55,7 @@ def foot() -> Foot:
     ("angle_deg", "still_s", "lying"),
     [(60.0, 2.0, True), (60.0, 1.5, False), (50.0, 20.0, False), (-60.0, 2.0, True)],
 )
-def test_a_foot_that_rests_tipped_over_for_two_seconds_is_lying(
+def test_foot_at_rest_and_tipped_for_two_seconds_is_lying(
     foot: Foot, angle_deg: float, still_s: float, lying: bool
 ) -> None:
     foot.held(angle_deg, 3.0, 1.0)
@@ -63,7 +63,7 @@ def test_a_foot_that_rests_tipped_over_for_two_seconds_is_lying(
     assert foot.posture.lying is lying
 
 
-def test_who_turns_over_is_still_lying_and_who_stands_up_is_not(foot: Foot) -> None:
+def test_turning_over_stays_lying_and_standing_up_ends_it(foot: Foot) -> None:
     foot.held(80.0, 3.0)
     foot.held(80.0, 3.0, 1.5)
     lying = [foot.posture.lying]
@@ -77,12 +77,12 @@ def test_who_turns_over_is_still_lying_and_who_stands_up_is_not(foot: Foot) -> N
     [
         (3.0, 1.0, 1.0, True),
         (3.0, 1.0, 0.5, False),  # not at rest yet
-        (2.0, 1.0, 4.0, False),  # as somebody lies down
+        (2.0, 1.0, 4.0, False),  # as in lying down
         (3.0, 2.0, 1.0, True),
         (3.0, 3.0, 4.0, False),  # crouched for a while: it was no collapse
     ],
 )
-def test_who_goes_down_suddenly_and_does_not_move_has_collapsed(
+def test_sudden_descent_without_motion_is_a_collapse(
     foot: Foot, rate_radps: float, going_down_s: float, still_s: float, collapsed: bool
 ) -> None:
     foot.held(70.0, going_down_s, rate_radps)
@@ -97,7 +97,7 @@ def test_one_quick_moment_on_the_way_down_is_a_collapse(foot: Foot) -> None:
     assert foot.posture.collapsed
 
 
-def test_who_had_crouched_for_a_while_and_goes_down_from_there_has_not_collapsed(
+def test_descent_from_a_long_crouch_is_no_collapse(
     foot: Foot,
 ) -> None:
     """The heel is up by thirty degrees, which is not upright."""
@@ -107,7 +107,7 @@ def test_who_had_crouched_for_a_while_and_goes_down_from_there_has_not_collapsed
     assert not foot.posture.collapsed
 
 
-def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> None:
+def test_collapse_in_mid_walk_begins_upright_at_the_last_step(foot: Foot) -> None:
     """A walking foot is hardly ever held as when standing."""
     foot.held(25.0, 5.0, 1.0)
     foot.steps(10.0, length_m=1.3)
@@ -116,7 +116,7 @@ def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> N
     assert foot.posture.collapsed
 
 
-def test_what_was_not_received_of_the_rest_undoes_no_collapse(foot: Foot) -> None:
+def test_missing_samples_of_the_rest_undo_no_collapse(foot: Foot) -> None:
     """A blow may cost some seconds of samples."""
     foot.held(70.0, 1.0, 3.0)
     foot.held(90.0, 0.5)
@@ -129,7 +129,7 @@ def test_what_was_not_received_of_the_rest_undoes_no_collapse(foot: Foot) -> Non
 
 
 @pytest.mark.parametrize("by_step", [False, True])
-def test_a_clock_that_was_set_back_hides_no_collapse(by_step: bool) -> None:
+def test_clock_set_back_hides_no_collapse(by_step: bool) -> None:
     foot = Foot()
     foot.now_ns += 2000 * WINDOW_NS
     foot.held(0.0, 1.0)
@@ -143,8 +143,8 @@ def test_a_clock_that_was_set_back_hides_no_collapse(by_step: bool) -> None:
     assert foot.posture.collapsed
 
 
-def test_a_step_that_is_reported_late_takes_nothing_from_what_is_known(foot: Foot) -> None:
-    """Of rows that the tracker held back for a second."""
+def test_late_step_changes_no_known_state(foot: Foot) -> None:
+    """Of rows that the tracker delayed by a second."""
     late = Stride(foot.now_ns, 1.0, 1.3, 0.0, up(10.0))
     foot.held(0.0, 1.0)
     foot.posture.take_stride(late)
@@ -161,7 +161,7 @@ def test_strides_are_quick_and_lying_down_after_them_is_no_collapse(foot: Foot) 
     assert foot.posture.lying
 
 
-def test_who_moves_again_has_not_collapsed_for_good(foot: Foot) -> None:
+def test_motion_ends_a_collapse(foot: Foot) -> None:
     foot.held(70.0, 1.0, 3.0)
     foot.held(90.0, 2.0)
     collapsed = [foot.posture.collapsed]
@@ -170,7 +170,7 @@ def test_who_moves_again_has_not_collapsed_for_good(foot: Foot) -> None:
     assert collapsed == [True, False]
 
 
-def test_a_unit_that_was_never_seen_standing_says_nothing() -> None:
+def test_unit_that_was_never_seen_standing_gives_no_posture() -> None:
     posture = Posture()
     for second in range(1, 20):
         window = BodyMotionWindow(second * WINDOW_NS, True, WEIGHT_MPS2 * up(90.0), 9.0)
@@ -187,22 +187,20 @@ def test_one_tipped_step_is_a_stumble_and_two_alike_are_crawling(foot: Foot) -> 
     assert reported == [(False, False), *crawling, *crawling, (False, False)]
 
 
-def test_two_tipped_steps_fifty_degrees_apart_are_of_person_who_lies_down(foot: Foot) -> None:
+def test_two_tipped_steps_fifty_degrees_apart_are_lying_down(foot: Foot) -> None:
     foot.steps(50.0)
     foot.steps(100.0)
     assert not foot.posture.crawling
 
 
 @pytest.mark.parametrize(("angle_deg", "tipped"), [(35.0, False), (45.0, True)])
-def test_a_shoe_rolls_by_some_forty_degrees(foot: Foot, angle_deg: float, tipped: bool) -> None:
+def test_shoe_rolls_by_some_forty_degrees(foot: Foot, angle_deg: float, tipped: bool) -> None:
     foot.steps(angle_deg)
     assert foot.posture.tipped_step is tipped
 
 
 @pytest.mark.parametrize(("length_m", "crawls"), [(0.75, True), (0.85, False)])
-def test_nobody_makes_long_strides_on_hands_and_knees(
-    foot: Foot, length_m: float, crawls: bool
-) -> None:
+def test_long_strides_are_no_crawling(foot: Foot, length_m: float, crawls: bool) -> None:
     foot.steps(KNEELING_DEG)
     foot.steps(KNEELING_DEG)
     foot.steps(KNEELING_DEG, length_m=length_m)
@@ -218,7 +216,7 @@ def test_nobody_makes_long_strides_on_hands_and_knees(
         (ON_THE_BACK_DEG, 2.0, True),
     ],
 )
-def test_who_crawls_may_rest_on_hands_and_knees_and_not_on_the_back(
+def test_crawling_may_rest_on_hands_and_knees_and_not_on_the_back(
     foot: Foot, rests_deg: float, still_s: float, lying: bool
 ) -> None:
     foot.held(KNEELING_DEG, 4.0, 1.0)
@@ -228,14 +226,14 @@ def test_who_crawls_may_rest_on_hands_and_knees_and_not_on_the_back(
     assert foot.posture.lying is lying
 
 
-def test_who_stumbles_and_lies_down_that_way_does_not_crawl(foot: Foot) -> None:
+def test_stumbling_and_lying_down_is_no_crawling(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 2.0, 1.0)
     foot.steps(KNEELING_DEG)
     foot.held(KNEELING_DEG, 2.0)
     assert foot.posture.lying
 
 
-def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None:
+def test_dropping_to_the_knees_and_crawling_is_no_collapse(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 1.0, 4.0)
     foot.steps(KNEELING_DEG)
     foot.steps(KNEELING_DEG)
@@ -244,10 +242,8 @@ def test_who_drops_to_the_knees_and_crawls_has_not_collapsed(foot: Foot) -> None
 
 
 @pytest.mark.parametrize(("length_m", "lying"), [(0.08, True), (0.12, False)])
-def test_who_crawls_on_after_a_long_rest_does_not_lie(
-    foot: Foot, length_m: float, lying: bool
-) -> None:
-    """Who only stirs goes nowhere."""
+def test_crawling_after_a_long_rest_is_no_lying(foot: Foot, length_m: float, lying: bool) -> None:
+    """Small motions without progress are."""
     foot.held(KNEELING_DEG, 3.0)
     assert foot.posture.lying
     for _ in range(3):
@@ -256,8 +252,8 @@ def test_who_crawls_on_after_a_long_rest_does_not_lie(
     assert foot.posture.lying is lying
 
 
-def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> None:
-    """Who has gone down may stir, and a tracker may say that a foot did."""
+def test_steps_without_progress_neither_begin_nor_end_a_crawl(foot: Foot) -> None:
+    """A lying wearer may move, and a tracker may report steps of it."""
     reported = []
     for length_m in (0.05, 0.05, 0.4, 0.05, 0.4, 0.05):
         foot.steps(KNEELING_DEG, length_m)
@@ -265,7 +261,7 @@ def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> 
     assert reported == [(True, False)] * 4 + [(True, True)] * 2
 
 
-def test_who_goes_down_suddenly_and_stirs_there_has_collapsed(foot: Foot) -> None:
+def test_sudden_descent_with_small_motions_is_a_collapse(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 1.0, 3.0)
     foot.steps(KNEELING_DEG, 0.05)
     foot.steps(KNEELING_DEG, 0.05)
@@ -273,7 +269,7 @@ def test_who_goes_down_suddenly_and_stirs_there_has_collapsed(foot: Foot) -> Non
     assert foot.posture.collapsed
 
 
-def test_one_tipped_step_gets_nobody_up(foot: Foot) -> None:
+def test_one_tipped_step_is_no_getting_up(foot: Foot) -> None:
     foot.held(KNEELING_DEG, 3.0)
     foot.held(KNEELING_DEG, 1.0, 1.0)
     foot.steps(KNEELING_DEG)
@@ -281,9 +277,7 @@ def test_one_tipped_step_gets_nobody_up(foot: Foot) -> None:
 
 
 @pytest.mark.parametrize("stood_up", [True, False])
-def test_who_stood_up_from_a_crawl_without_a_stride_may_collapse(
-    foot: Foot, stood_up: bool
-) -> None:
+def test_collapse_after_standing_up_from_a_crawl_is_found(foot: Foot, stood_up: bool) -> None:
     foot.steps(KNEELING_DEG)
     foot.steps(KNEELING_DEG)
     foot.held(KNEELING_DEG, 1.0, 1.0)
@@ -303,7 +297,7 @@ def test_tipped_is_longer_than_a_swing(foot: Foot) -> None:
     assert tipped == [False, False, False, True, False]
 
 
-def test_a_clock_that_was_set_back_stands_nobody_up(foot: Foot) -> None:
+def test_clock_set_back_is_no_getting_up(foot: Foot) -> None:
     foot.now_ns += 100 * WINDOW_NS
     foot.held(70.0, 3.0, 1.0)
     foot.now_ns = 0
@@ -311,8 +305,8 @@ def test_a_clock_that_was_set_back_stands_nobody_up(foot: Foot) -> None:
     assert foot.posture.tipped
 
 
-def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
-    """It was strapped on while its wearer sat, thirty degrees aside."""
+def test_standing_attitude_is_learnt_from_long_strides() -> None:
+    """The unit was strapped on while its wearer sat, thirty degrees aside."""
     foot = Foot()
     foot.held(30.0, 0.5, 1.0)
     for _ in range(30):
@@ -321,7 +315,7 @@ def test_how_a_foot_stands_is_learnt_from_long_strides() -> None:
     assert foot.posture.lying, "seventy degrees from how it stands"
 
 
-def test_who_walks_before_ever_resting_is_known_by_the_strides() -> None:
+def test_standing_attitude_is_learnt_from_strides_before_any_rest() -> None:
     foot = Foot(stands_s=0.0)
     foot.held(25.0, 2.0, 1.0)
     foot.steps(0.0, length_m=1.3)
@@ -329,14 +323,14 @@ def test_who_walks_before_ever_resting_is_known_by_the_strides() -> None:
     assert foot.posture.lying
 
 
-def test_however_long_person_crawls_it_does_not_become_standing(foot: Foot) -> None:
+def test_long_crawl_does_not_become_standing(foot: Foot) -> None:
     for _ in range(50):
         foot.steps(KNEELING_DEG)
     assert foot.posture.crawling
 
 
-def test_a_foot_that_moves_does_not_show_how_it_stands() -> None:
-    """While the unit is strapped on, say."""
+def test_moving_foot_does_not_show_its_standing_attitude() -> None:
+    """For example while the unit is strapped on."""
     foot = Foot(stands_s=0.0)
     foot.held(90.0, 1.0, 2.0)
     foot.held(0.0, 1.0)
@@ -344,7 +338,7 @@ def test_a_foot_that_moves_does_not_show_how_it_stands() -> None:
     assert foot.posture.lying
 
 
-def test_a_unit_switched_on_in_its_bag_has_seen_after_five_strides_how_it_is_worn() -> None:
+def test_unit_switched_on_in_its_bag_knows_its_attitude_after_five_strides() -> None:
     foot = Foot(stands_s=0.0)
     foot.held(120.0, 3.0)
     for _ in range(5):
@@ -354,7 +348,7 @@ def test_a_unit_switched_on_in_its_bag_has_seen_after_five_strides_how_it_is_wor
     assert not foot.posture.lying
 
 
-def test_a_sensor_that_shows_noughts_before_it_is_awake_does_not_show_how_it_is_worn() -> None:
+def test_zeros_of_a_starting_sensor_show_no_attitude() -> None:
     foot = Foot(stands_s=0.0)
     foot.posture.take_window(BodyMotionWindow(WINDOW_NS, False, np.zeros(3), 0.0), 0.5)
     foot.held(0.0, 1.0)

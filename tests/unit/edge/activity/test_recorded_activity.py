@@ -34,7 +34,7 @@ def samples(duration_s: float, start_s: float = 0.0, force=(0.0, 0.0, 9.81), sha
     return ImuBatch(t_ns, accel, (0.01 + 0.1 * shake) * noise[:, 3:])
 
 
-def test_noise_is_no_motion_and_motion_starts_the_count_again():
+def test_noise_is_no_motion_and_motion_restarts_the_count():
     motion = BodyMotion()
     motion.push(samples(10.5))
     assert motion.motionless_s == pytest.approx(10.0)
@@ -45,7 +45,7 @@ def test_noise_is_no_motion_and_motion_starts_the_count_again():
 
 @pytest.mark.parametrize("column", range(6))
 @pytest.mark.parametrize("times", [0.6, 1.6])
-def test_each_axis_alone_tells_motion_from_noise(column, times):
+def test_each_axis_alone_distinguishes_motion_from_noise(column, times):
     """0.4 m/s2 or 0.12 rad/s: more than any sensor's noise, less than any step."""
     imu = samples(5.5)
     felt = np.zeros((len(imu), 6))
@@ -57,14 +57,14 @@ def test_each_axis_alone_tells_motion_from_noise(column, times):
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_the_quickest_instant_of_half_a_second_is_reported_about_any_axis(axis):
+def test_quickest_instant_of_half_a_second_counts_about_any_axis(axis):
     imu = samples(0.6)
     imu.gyro_radps[20, axis] = -3.0
     (window,) = BodyMotion().push(imu)
     assert window.peak_rate_radps == pytest.approx(3.0, abs=0.05)
 
 
-def test_a_foot_that_is_turned_slowly_moves():
+def test_slowly_turned_foot_moves():
     motion = BodyMotion()
     for second in range(10):
         tilt = 0.3 * second
@@ -72,7 +72,7 @@ def test_a_foot_that_is_turned_slowly_moves():
     assert motion.motionless_s <= 1.0
 
 
-def test_samples_that_say_nothing_count_neither_way():
+def test_missing_values_count_neither_way():
     motion = BodyMotion()
     motion.push(samples(5.5))
     before_s = motion.motionless_s
@@ -82,7 +82,7 @@ def test_samples_that_say_nothing_count_neither_way():
     assert motion.motionless_s == pytest.approx(before_s + 0.5)
 
 
-def test_a_gyroscope_that_has_failed_does_not_hide_that_nobody_moves():
+def test_failed_gyroscope_does_not_hide_stillness():
     motion = BodyMotion()
     pieces = samples(5.5), samples(5.0, 5.5), samples(1.0, 10.5, shake=1.0), samples(0.6, 11.5)
     motionless_s = []
@@ -92,7 +92,7 @@ def test_a_gyroscope_that_has_failed_does_not_hide_that_nobody_moves():
     assert motionless_s == [5.0, 10.0, 0.0, 0.5]
 
 
-def test_who_falls_on_a_gyroscope_and_breaks_it_has_fallen():
+def test_fall_that_breaks_the_gyroscope_is_found():
     monitor = ActivityMonitor()
     monitor.push(samples(2.0, shake=1.0), empty_rows())
     monitor.push(samples(0.4, 2.0, (0.0, 0.0, 0.5)), empty_rows())
@@ -111,9 +111,7 @@ def test_who_falls_on_a_gyroscope_and_breaks_it_has_fallen():
         (0.1, (9.81, 0.0, 0.0), 0.0, 0),  # a step
     ],
 )
-def test_a_fall_is_a_drop_a_blow_and_nobody_who_walks_on(
-    weightless_s, after_force, after_shake, falls
-):
+def test_fall_is_a_drop_a_blow_and_no_walking(weightless_s, after_force, after_shake, falls):
     monitor = ActivityMonitor()
     pieces = (
         samples(2.0, 0.0, shake=1.0),
@@ -137,7 +135,7 @@ def test_a_fall_is_a_drop_a_blow_and_nobody_who_walks_on(
         (0.0, 3.0, 0),  # stands, jumps down, and walks on
     ],
 )
-def test_a_fall_is_reported_at_any_instant_and_however_samples_come(
+def test_fall_is_reported_at_any_instant_and_in_any_batching(
     batch_rows, before_shake, after_shake, falls
 ):
     for after_rows in range(0, 50, 3):
@@ -161,8 +159,8 @@ def test_a_fall_is_reported_at_any_instant_and_however_samples_come(
 
 @pytest.mark.parametrize("next_s", [3.0, 9.0, 600.0, -100.0])
 @pytest.mark.parametrize(("after_shake", "falls"), [(0.0, 1), (3.0, 0)])
-def test_who_is_found_down_after_a_hole_behind_the_blow_has_fallen(next_s, after_shake, falls):
-    """The line was cut by the blow; nobody is known to have got up meanwhile."""
+def test_lying_after_a_gap_behind_the_blow_is_a_fall(next_s, after_shake, falls):
+    """The blow cut the line; no sample shows that the wearer got up meanwhile."""
     monitor = ActivityMonitor()
     pieces = (
         samples(2.0, shake=1.0),
@@ -174,21 +172,21 @@ def test_who_is_found_down_after_a_hole_behind_the_blow_has_fallen(next_s, after
     assert monitor.activity(round((next_s + 12.0) * NS_PER_S)) is not Activity.FALLING
 
 
-def test_a_blow_without_a_drop_is_no_fall():
+def test_blow_without_a_drop_is_no_fall():
     falls = FallDetector()
     falls.push(samples(0.05, 0.0, (0.0, 0.0, 80.0)))
     assert not falls.falling
 
 
 def pushed(monitor: ActivityMonitor, *pieces: ImuBatch) -> Activity:
-    """What is said at the end of them."""
+    """State at the end of the samples."""
     for piece in pieces:
         monitor.push(piece, empty_rows())
     return monitor.activity(int(pieces[-1].t_ns[-1]))
 
 
-def test_of_a_sensor_that_has_stopped_nobody_knows_what_its_wearer_does():
-    """It broke in mid walk; what else the unit has to say goes on."""
+def test_activity_is_unknown_after_the_sensor_stopped():
+    """It broke in mid walk; other messages of the unit continue."""
     monitor = ActivityMonitor()
     assert pushed(monitor, samples(5.0, shake=1.0)) is Activity.WALKING
     assert monitor.activity(6 * NS_PER_S) is Activity.WALKING
@@ -199,13 +197,13 @@ def test_of_a_sensor_that_has_stopped_nobody_knows_what_its_wearer_does():
     assert pushed(monitor, samples(2.0, 10.0)) is Activity.STILL
 
 
-def test_who_stirs_for_a_moment_after_a_hole_does_not_walk():
+def test_short_motion_after_a_gap_is_no_walking():
     monitor = ActivityMonitor()
     pieces = samples(3.0), samples(0.5, 60.0, shake=1.0), samples(0.1, 60.5)
     assert pushed(monitor, *pieces) is Activity.STILL
 
 
-def test_a_collapse_is_reported_though_samples_were_lost_behind_it():
+def test_collapse_is_reported_though_samples_were_lost_behind_it():
     monitor = ActivityMonitor()
     going_down = replace(samples(1.0, 3.0, (9.0, 0.0, 4.0), shake=1.0))
     going_down.gyro_radps[:, 1] += 3.0
@@ -228,8 +226,8 @@ def test_the_cadence_is_of_the_last_strides_also_where_the_clock_was_set_back():
 
 
 @pytest.mark.parametrize(("after_s", "runs"), [(2.4, True), (2.6, False)])
-def test_who_has_come_down_for_the_last_time_goes_on_for_two_and_a_half_seconds(after_s, runs):
-    """The foot still stirs: what it does now is known from footfalls that have not come yet."""
+def test_end_of_the_last_stride_lasts_two_and_a_half_seconds(after_s, runs):
+    """The foot still moves: its activity follows from footfalls that have not come yet."""
     monitor = ActivityMonitor()
     strides = footsteps([(float(t), 3.0 * t, 0.0, t % 2 == 0) for t in range(13)])
     monitor.push(samples(20.0, force=(0.0, 0.0, -9.81), shake=1.0), strides)
@@ -239,7 +237,7 @@ def test_who_has_come_down_for_the_last_time_goes_on_for_two_and_a_half_seconds(
 
 
 def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity]:
-    """What the unit says from ``after_s`` into each time in which the wearer does ``kind``."""
+    """States of the unit from ``after_s`` into each period in which the wearer does ``kind``."""
     score = ActivityScore()
 
     def label(t_s: float) -> Activity | None:
@@ -266,7 +264,7 @@ def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity
         ("stairs?seed=34", Activity.WALKING, 0.95),
     ],
 )
-def test_a_simulated_wearer_is_seen_at_what_he_does(scenario, kind, share):
+def test_simulated_activity_is_recognised(scenario, kind, share):
     stated = during(open_simulation(scenario), kind)
     assert stated[kind] > share * stated.total() > 0
 
@@ -292,7 +290,7 @@ def footsteps(rows: list[tuple[float, float, float, bool]]):
     )
 
 
-def test_a_stride_goes_from_lifting_the_foot_to_the_next_footfall():
+def test_stride_lasts_from_lift_off_to_the_next_footfall():
     rows = footsteps([(0.0, 0, 0, True), (0.5, 0, 0, True), (0.8, 0.7, 0.2, False)])
     cutter = StrideCutter()
     assert cutter.push(rows) == []
@@ -302,7 +300,7 @@ def test_a_stride_goes_from_lifting_the_foot_to_the_next_footfall():
     assert stride.up_b.tolist() == [0.0, 0.0, -1.0]
 
 
-def test_a_footfall_in_mid_swing_is_none():
+def test_footfall_in_mid_swing_is_none():
     rows = footsteps(
         [
             (0.0, 0, 0, True),
@@ -331,13 +329,13 @@ def climbing(rise_m: float, n: int = 12):
     [
         (0.34, None, Activity.STAIRS_UP),
         (0.34, -4.0, Activity.STAIRS_UP),
-        (0.34, 0.0, Activity.WALKING),  # the air stays as it is: the tracker is wrong
+        (0.34, 0.0, Activity.WALKING),  # the pressure is constant: the tracker is wrong
         (0.34, 4.0, Activity.WALKING),
         (-0.34, 4.0, Activity.STAIRS_DOWN),
         (-0.34, 0.0, Activity.WALKING),
     ],
 )
-def test_the_barometer_has_a_say_on_stairs(rise_m, pa_per_s, reported):
+def test_barometer_counts_on_stairs(rise_m, pa_per_s, reported):
     monitor = ActivityMonitor()
     imu = samples(12.5, shake=1.0)
     if pa_per_s is not None:
@@ -363,7 +361,7 @@ def a_tenth_twice(imu: ImuBatch) -> ImuBatch:
 
 
 def activities(source, until_s: float, spoilt=as_it_is) -> tuple[list[Activity], int]:
-    """Each second's activity, and the falls told."""
+    """Activity of each second, and the reported falls."""
     tracker = make_tracker("eskf", source.description)
     monitor = ActivityMonitor()
     each: list[Activity] = []
@@ -389,7 +387,7 @@ def test_a_simulated_collapse_is_a_fall_and_then_lying(spoilt):
 
 
 @pytest.mark.slow
-def test_a_simulated_search_has_no_falls_and_nobody_lies():
+def test_simulated_search_has_no_falls_and_no_lying():
     each, falls = activities(open_source("simulated:search-ground-floor"), 90.0)
     assert falls == 0
     assert set(each) <= {Activity.UNKNOWN, Activity.STILL, Activity.WALKING}
@@ -411,7 +409,7 @@ def test_recorded_walks_hold_walking_and_no_falls(walks):
     ("speed_mps", "kind"),
     [(0.0, Activity.STILL), (1.3, Activity.WALKING), (2.0, None), (3.0, Activity.RUNNING)],
 )
-def test_a_reference_labels_by_its_speed_or_not_at_all(speed_mps, kind):
+def test_reference_labels_by_its_speed_or_not_at_all(speed_mps, kind):
     t_s = np.arange(0.0, 10.0, 0.05)
     truth = RecordedTruth(t_s, np.column_stack((speed_mps * t_s, 0.0 * t_s, 0.0 * t_s)))
     label = recorded_label(truth, sampled=True)

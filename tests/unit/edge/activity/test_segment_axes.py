@@ -28,7 +28,7 @@ def directions(recording: Path) -> list[Floats]:
 
 
 @pytest.mark.slow
-def test_forward_is_found_in_recorded_walks(worn_elsewhere: tuple[Path, ...]) -> None:
+def test_recorded_walks_show_the_forward_axis(worn_elsewhere: tuple[Path, ...]) -> None:
     found = [
         directions(path) for path in sorted(worn_elsewhere[0].glob("ipol/*/lower_back.csv.gz"))
     ]

@@ -22,7 +22,7 @@ SIDES = {Mobility.LEFTWARD, Mobility.RIGHTWARD}
 
 
 def ways(*legs: Leg, seed: int = 1) -> Counter[Mobility]:
-    """How often each way was reported after a walk forward, ten times a second."""
+    """Number of reports of each direction after a walk forward, ten times a second."""
     scenario = Scenario(name="x", summary="x", start=(0.0, 0.0), legs=(*FIRST, *legs))
     simulation = Simulation(scenario, seed)
     tracker = make_tracker("eskf", simulation.description)
@@ -39,7 +39,7 @@ def ways(*legs: Leg, seed: int = 1) -> Counter[Mobility]:
 
 
 def most(found: Counter[Mobility]) -> Mobility:
-    """Of those that say which way."""
+    """Share of the reports with a direction."""
     reported = {way: n for way, n in found.items() if way not in (Mobility.STILL, Mobility.MOVING)}
     return max(reported, key=reported.__getitem__)
 
@@ -74,7 +74,7 @@ def stride(number: int, step_b: tuple[float, float], length_m: float = 1.4) -> S
         ((0.0, -1.0), Mobility.LEFTWARD),
     ],
 )
-def test_a_step_is_seen_against_the_long_strides_of_before(
+def test_step_is_compared_with_earlier_long_strides(
     step_b: tuple[float, float], way: Mobility
 ) -> None:
     direction = StepDirection()
@@ -85,13 +85,13 @@ def test_a_step_is_seen_against_the_long_strides_of_before(
     assert direction.mobility(9 * NS_PER_S) is None
 
 
-def test_before_anyone_has_gone_forward_the_way_is_not_known() -> None:
+def test_direction_is_unknown_before_the_first_walk_forward() -> None:
     direction = StepDirection()
     direction.push(stride(1, (1.0, 0.0), 0.6))
     assert direction.mobility(NS_PER_S) is Mobility.MOVING
 
 
-def test_a_minute_backward_does_not_change_what_forward_is() -> None:
+def test_minute_backward_does_not_change_the_forward_direction() -> None:
     direction = StepDirection()
     for number in range(30):
         direction.push(stride(number, (1.0, 0.0)))

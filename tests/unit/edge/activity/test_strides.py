@@ -1,4 +1,4 @@
-"""A foot's path cut into strides: where each begins, how long it takes, how far it goes."""
+"""A foot's path cut into strides: begin, duration and length of each."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def figures(strides: list[Stride]) -> list[tuple[int, float, float, float]]:
     return [(one.end_ns, one.period_s, one.length_m, one.rise_m) for one in strides]
 
 
-def test_a_stride_goes_along_the_ground_in_any_direction_and_rises_apart_from_it() -> None:
+def test_stride_has_a_length_along_the_ground_and_a_separate_rise() -> None:
     strides = StrideCutter().push(walk())
     assert [stride.end_ns for stride in strides] == [second * NS_PER_S for second in range(1, 6)]
     assert [stride.length_m for stride in strides] == pytest.approx([1.5] * 5)
@@ -66,7 +66,7 @@ def test_a_stride_goes_along_the_ground_in_any_direction_and_rises_apart_from_it
 
 
 @pytest.mark.parametrize("at_once", [1, 4, 50])
-def test_strides_are_the_same_however_rows_are_batched(at_once: int) -> None:
+def test_strides_are_the_same_in_any_batching(at_once: int) -> None:
     track = walk()
     cutter = StrideCutter()
     cut: list[Stride] = []
@@ -76,7 +76,7 @@ def test_strides_are_the_same_however_rows_are_batched(at_once: int) -> None:
     assert figures(cut) == figures(StrideCutter().push(track))
 
 
-def test_a_stride_takes_from_footfall_to_footfall() -> None:
+def test_stride_lasts_from_footfall_to_footfall() -> None:
     """The first has no footfall before it: its swing is taken for three quarters of it."""
     strides = StrideCutter().push(walk(strides=3))
     assert [stride.period_s for stride in strides] == pytest.approx([0.62 / 0.75, 1.0, 1.0])
@@ -84,7 +84,7 @@ def test_a_stride_takes_from_footfall_to_footfall() -> None:
 
 
 @pytest.mark.parametrize(("rested_s", "period_s"), [(2.3, 2.9), (2.5, 0.6 / 0.75)])
-def test_a_foot_that_rested_made_no_stride_of_the_rest(rested_s: float, period_s: float) -> None:
+def test_rest_is_no_part_of_a_stride(rested_s: float, period_s: float) -> None:
     """Three seconds from footfall to footfall at most."""
     again_s = 1.0 + rested_s
     track = rows(
@@ -101,9 +101,7 @@ def test_a_foot_that_rested_made_no_stride_of_the_rest(rested_s: float, period_s
 
 
 @pytest.mark.parametrize(("swing_s", "counts"), [(0.36, True), (0.34, False)])
-def test_nobody_swings_a_foot_in_less_than_a_third_of_a_second(
-    swing_s: float, counts: bool
-) -> None:
+def test_swing_of_less_than_a_third_of_a_second_is_refused(swing_s: float, counts: bool) -> None:
     track = rows(
         [
             (0.0, 0.0, 0.0, 0.0, True),
@@ -117,7 +115,7 @@ def test_nobody_swings_a_foot_in_less_than_a_third_of_a_second(
 @pytest.mark.parametrize(
     ("stood_s", "length_m"), [(0.09, 1.6), (0.11, 1.0)], ids=["in the air", "on the ground"]
 )
-def test_after_too_short_a_swing_a_foot_that_stands_no_longer_than_a_moment_was_in_the_air(
+def test_short_stance_after_too_short_a_swing_was_in_the_air(
     stood_s: float, length_m: float
 ) -> None:
     off_s = 0.3 + stood_s
@@ -135,7 +133,7 @@ def test_after_too_short_a_swing_a_foot_that_stands_no_longer_than_a_moment_was_
     assert stride.length_m == pytest.approx(length_m)
 
 
-def test_a_doubted_footfall_is_not_held_against_the_next() -> None:
+def test_doubted_footfall_does_not_affect_the_next() -> None:
     """The stance after a whole stride may be as short as a runner's."""
     track = rows(
         [
@@ -153,7 +151,7 @@ def test_a_doubted_footfall_is_not_held_against_the_next() -> None:
     assert [stride.length_m for stride in strides] == pytest.approx([2.0, 2.0])
 
 
-def test_a_track_that_begins_in_the_air_has_no_stride_before_the_foot_was_down() -> None:
+def test_track_that_begins_in_the_air_has_no_stride_before_the_first_stance() -> None:
     track = rows(
         [
             (0.0, 5.0, 0.0, 0.0, False),
@@ -167,7 +165,7 @@ def test_a_track_that_begins_in_the_air_has_no_stride_before_the_foot_was_down()
     assert stride.length_m == pytest.approx(1.5)
 
 
-def test_a_place_that_is_no_number_makes_no_stride_and_spoils_none_after_it() -> None:
+def test_place_that_is_no_number_makes_no_stride_and_affects_no_later_one() -> None:
     track = walk(strides=4)
     track.position_n_m[track.t_ns == 2 * NS_PER_S] = np.nan
     strides = StrideCutter().push(track)
@@ -176,7 +174,7 @@ def test_a_place_that_is_no_number_makes_no_stride_and_spoils_none_after_it() ->
     assert all(math.isfinite(stride.period_s) for stride in strides)
 
 
-def test_a_clock_that_was_set_back_makes_no_stride_of_no_time() -> None:
+def test_clock_set_back_makes_no_stride_of_no_time() -> None:
     cutter = StrideCutter()
     cutter.push(walk(strides=3))
     cutter.push(rows([(3.1, 2.7, 3.6, 0.6, False)]))
@@ -186,7 +184,7 @@ def test_a_clock_that_was_set_back_makes_no_stride_of_no_time() -> None:
 
 
 def attitude(roll_rad: float, pitch_rad: float, heading_rad: float) -> np.ndarray:
-    """A quaternion (4,) that turns by heading, then pitch, then roll."""
+    """Quaternion (4,) of heading, then pitch, then roll."""
 
     def turn(axis: int, angle_rad: float) -> np.ndarray:
         out = np.zeros(4)
@@ -210,22 +208,22 @@ def attitude(roll_rad: float, pitch_rad: float, heading_rad: float) -> np.ndarra
         (math.pi / 6, math.pi / 3, (math.sqrt(0.75), -0.25, -math.sqrt(3.0) / 4.0)),
     ],
 )
-def test_up_is_where_the_foot_has_it_whatever_way_it_points(
+def test_up_direction_of_the_foot_is_independent_of_its_heading(
     roll_rad: float, pitch_rad: float, up_b: tuple[float, float, float], heading_rad: float
 ) -> None:
     stated = up_in_body(attitude(roll_rad, pitch_rad, heading_rad))
     assert stated == pytest.approx(up_b, abs=1e-12)
 
 
-def test_a_stride_says_how_the_foot_was_held_as_it_came_down() -> None:
+def test_stride_has_the_attitude_of_the_footfall() -> None:
     track = walk(strides=1)
     track.quaternion_nb[-1] = attitude(0.0, math.pi / 2, 0.0)
     (stride,) = StrideCutter().push(track)
     assert stride.up_b == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
 
 
-def test_a_footfall_of_which_the_attitude_is_no_number_ends_no_stride() -> None:
-    """How a foot stands is learnt from it: one such stride would never be forgotten."""
+def test_footfall_with_an_attitude_that_is_no_number_ends_no_stride() -> None:
+    """The standing attitude is learnt from it: one such stride would never be dropped."""
     track = walk(strides=3)
     whole = StrideCutter().push(track)
     track.quaternion_nb[track.t_ns == whole[1].end_ns] = np.nan

@@ -1,4 +1,4 @@
-"""Which battery stands for the unit."""
+"""The battery that represents the unit."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from edge.samples import BatterySample
 from shared.clock import NS_PER_S
 
 
-def test_the_emptiest_battery_is_that_of_the_unit() -> None:
+def test_emptiest_battery_is_that_of_the_unit() -> None:
     batteries = Batteries()
     assert batteries.emptiest(0) is None
     batteries.push(BatterySample(0, 0.8))
@@ -15,7 +15,7 @@ def test_the_emptiest_battery_is_that_of_the_unit() -> None:
     assert batteries.emptiest(NS_PER_S) == BatterySample(0, 0.3, battery="BAT0")
 
 
-def test_a_battery_of_long_ago_counts_only_where_there_is_no_other() -> None:
+def test_old_reading_counts_only_where_there_is_no_other() -> None:
     batteries = Batteries()
     batteries.push(BatterySample(0, 0.1))
     assert batteries.emptiest(100 * NS_PER_S) == BatterySample(0, 0.1)

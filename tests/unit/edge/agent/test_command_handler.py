@@ -1,4 +1,4 @@
-"""A unit does each command once and always answers."""
+"""Commands at a unit: each is done once and always answered."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def command(kind: CommandKind, command_id: str = "c1", expires_ns: int = 0, rate
     return Command(header, command_id, kind, "anna", expires_ns, "", rate_hz)
 
 
-def test_a_rate_is_set_once_however_often_it_is_asked(command_handler, rates):
+def test_rate_is_set_once_however_often_it_is_requested(command_handler, rates):
     asked = command(CommandKind.SET_POSITION_RATE, rate_hz=10.0)
     first, second = command_handler.take(asked), command_handler.take(asked)
     assert rates == [10.0]
@@ -38,14 +38,14 @@ def test_a_rate_is_set_once_however_often_it_is_asked(command_handler, rates):
 
 
 @pytest.mark.parametrize("rate_hz", [0.1, 50.0])
-def test_the_least_and_the_most_that_the_station_offers_are_taken(command_handler, rates, rate_hz):
+def test_least_and_greatest_rate_of_the_station_are_accepted(command_handler, rates, rate_hz):
     asked = command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz)
     assert command_handler.take(asked).state is CommandState.RECEIVED
     assert rates == [rate_hz]
 
 
 @pytest.mark.parametrize("rate_hz", [0.0, 0.01, 51.0])
-def test_a_rate_out_of_range_is_refused_with_the_reason(command_handler, rates, rate_hz):
+def test_rate_out_of_range_is_refused_with_the_reason(command_handler, rates, rate_hz):
     reply = command_handler.take(command(CommandKind.SET_POSITION_RATE, rate_hz=rate_hz))
     assert reply.state is CommandState.REFUSED
     assert "between" in reply.detail
@@ -66,7 +66,7 @@ def test_expired_and_unknown_commands_are_refused(command_handler, kind, expires
     assert command_handler.take(command(kind, expires_ns=expires_ns)).state is state
 
 
-def test_what_is_remembered_is_bounded_and_is_the_newest(command_handler, rates):
+def test_number_of_kept_commands_is_bounded_to_the_newest(command_handler, rates):
     for number in range(5000):
         command_handler.take(command(CommandKind.TEXT, f"c{number}"))
     asked = command(CommandKind.SET_POSITION_RATE, rate_hz=10.0)
@@ -86,7 +86,7 @@ ASKING = [
 
 
 @pytest.mark.parametrize("kind", [kind for kind in CommandKind if kind is not CommandKind.UNKNOWN])
-def test_the_wearer_acknowledges_what_asks_for_it_and_once(command_handler, kind):
+def test_wearer_acknowledges_requests_for_it_once(command_handler, kind):
     reply = command_handler.take(command(kind, rate_hz=5.0))
     assert reply.awaits_wearer is (kind in ASKING)
     answers = command_handler.acknowledge()
@@ -94,7 +94,7 @@ def test_the_wearer_acknowledges_what_asks_for_it_and_once(command_handler, kind
     assert not command_handler.acknowledge()
 
 
-def test_a_repeat_after_the_acknowledgement_is_reported_of_it(command_handler):
+def test_repeat_after_the_acknowledgement_is_answered_with_it(command_handler):
     asked = command(CommandKind.PAR_REQUEST)
     command_handler.take(asked)
     (acknowledged,) = command_handler.acknowledge()
@@ -104,13 +104,13 @@ def test_a_repeat_after_the_acknowledgement_is_reported_of_it(command_handler):
     assert not command_handler.acknowledge()
 
 
-def test_one_press_answers_everything_that_is_asked(command_handler):
+def test_one_press_answers_all_requests(command_handler):
     for number in range(3):
         command_handler.take(command(CommandKind.TEXT, f"c{number}"))
     assert [answer.command_id for answer in command_handler.acknowledge()] == ["c0", "c1", "c2"]
 
 
-def test_a_unit_without_outputs_refuses_to_signal_its_place(rates):
+def test_unit_without_outputs_refuses_to_signal_its_place(rates):
     handler = CommandHandler(Stamper("u1", 1, ManualClock()), rates.append, has_outputs=False)
     reply = handler.take(command(CommandKind.LOCATE))
     assert (reply.state, reply.detail) == (

@@ -1,4 +1,4 @@
-"""Where the tracker's knowledge of the earth's field comes from: settings, fixes and the date."""
+"""Expected field of the Earth for the tracker: from settings, fixes and the date."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def declination_deg(learned: tuple[EarthField, int] | None) -> float:
     return degrees(learned[0].declination_rad)
 
 
-def test_the_settings_say_it_from_the_first_sample_on_and_once():
+def test_settings_give_the_field_from_the_first_sample_on_and_once():
     where = ExpectedField(REYKJAVIK)
     learned = where.take(samples(7.0), utc_ns_of)
     assert declination_deg(learned) == pytest.approx(-11.13, abs=0.02)
@@ -57,7 +57,7 @@ def test_the_settings_say_it_from_the_first_sample_on_and_once():
     assert where.take(samples(8.0), utc_ns_of) is None
 
 
-def test_a_fix_knows_better_than_the_settings_and_is_the_last_word():
+def test_fix_replaces_the_settings_for_good():
     where = ExpectedField(REYKJAVIK)
     where.take(samples(), utc_ns_of)
     learned = where.take(samples(1.0, (fix(SYDNEY, 1.05),)), utc_ns_of)
@@ -70,21 +70,21 @@ def test_a_fix_knows_better_than_the_settings_and_is_the_last_word():
 @pytest.mark.parametrize(
     "useless", [fix(ApproximatePosition(nan, 0.0)), fix(SYDNEY, fix_type=0), fix(SYDNEY, std_m=1e4)]
 )
-def test_a_useless_fix_says_nothing(useless: GpsSample):
+def test_useless_fix_gives_no_field(useless: GpsSample):
     assert ExpectedField(None).take(samples(0.0, (useless,)), utc_ns_of) is None
 
 
-def test_without_settings_and_fixes_nothing_is_stated():
+def test_no_field_without_settings_and_fixes():
     assert ExpectedField(None).take(samples(), utc_ns_of) is None
 
 
-def test_while_the_clock_is_not_set_it_waits():
+def test_field_waits_until_the_clock_is_set():
     where = ExpectedField(REYKJAVIK)
     assert where.take(samples(0.0, (fix(SYDNEY),)), lambda t_ns: t_ns) is None
     assert declination_deg(where.take(samples(1.0), utc_ns_of)) == pytest.approx(-11.13, abs=0.02)
 
 
-def test_a_replay_seconds_later_finds_the_very_same():
+def test_replay_seconds_later_finds_the_same_field():
     live = ExpectedField(None).take(samples(0.0, (fix(SYDNEY),)), utc_ns_of)
     again = ExpectedField(None).take(
         samples(0.0, (fix(SYDNEY),)), lambda t: utc_ns_of(t) + NS_PER_S
@@ -92,7 +92,7 @@ def test_a_replay_seconds_later_finds_the_very_same():
     assert live == again
 
 
-def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
+def test_pipeline_gives_the_field_to_the_tracker_before_the_samples():
     reported: list[str] = []
 
     class Listening(NoTracker):
@@ -119,7 +119,7 @@ def settings(folder: Path, place: str) -> EdgeConfig:
     return load_config(file, EdgeConfig)
 
 
-def test_the_place_stands_in_the_agents_settings(tmp_path: Path):
+def test_place_is_a_setting_of_the_agent(tmp_path: Path):
     assert settings(tmp_path, "").place is None
     assert settings(tmp_path, "[place]\nlat_deg = 64.15\nlon_deg = -21.94").place == REYKJAVIK
 
@@ -132,6 +132,6 @@ def test_the_place_stands_in_the_agents_settings(tmp_path: Path):
         ("[place]\nlat = 64.15\nlon_deg = 1.0", "lat_deg"),
     ],
 )
-def test_a_place_that_is_none_is_named(tmp_path: Path, place: str, named: str):
+def test_impossible_place_is_named(tmp_path: Path, place: str, named: str):
     with pytest.raises(ConfigError, match=named):
         settings(tmp_path, place)

@@ -1,4 +1,4 @@
-"""The link comes and goes; the unit is declared on it each time, and waits for nothing."""
+"""The link comes and goes; the unit is declared on it each time, and does not wait for it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.rig.waiting import PATIENCE_S, until
 
 
 class Station:
-    """Another end of the bus that notes what it sees."""
+    """Another end of the bus that records what it receives."""
 
     def __init__(self) -> None:
         self.router = MemoryRouter()
@@ -69,7 +69,7 @@ def make_link(open_bus, commands, other_end: FakeStation | None = None) -> Link:
     )
 
 
-def test_a_unit_on_the_link_is_alive_is_commanded_and_serves_its_journal(station):
+def test_linked_unit_has_a_token_receives_commands_and_serves_its_journal(station):
     commands: list[bytes] = []
     link = make_link(station.router.attach_unit, commands)
     until(lambda: station.alive == [True])
@@ -82,7 +82,7 @@ def test_a_unit_on_the_link_is_alive_is_commanded_and_serves_its_journal(station
     assert station.alive == [True, False]
 
 
-def test_an_outage_cuts_the_link_and_its_end_restores_it(station):
+def test_outage_cuts_the_link_and_its_end_restores_it(station):
     link = make_link(station.router.attach_unit, [])
     until(lambda: station.alive == [True])
     link.publish(POSITION.key("u1"), b"1", Qos.LIVE)
@@ -96,7 +96,7 @@ def test_an_outage_cuts_the_link_and_its_end_restores_it(station):
     link.close()
 
 
-def test_a_bus_that_cannot_be_opened_is_reported_once_and_tried_again(station, caplog, monkeypatch):
+def test_bus_that_cannot_be_opened_is_reported_once_and_retried(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.agent.link._RETRY_S", 0.01)
     tries: list[int] = []
 
@@ -116,7 +116,7 @@ def test_a_bus_that_cannot_be_opened_is_reported_once_and_tried_again(station, c
     ]
 
 
-def test_why_a_bus_cannot_be_opened_is_reported_once(caplog, monkeypatch):
+def test_reason_of_an_unopened_bus_is_reported_once(caplog, monkeypatch):
     """A unit of two stations opens none before one of them is there."""
     monkeypatch.setattr("edge.agent.link._RETRY_S", 0.01)
     tries: list[int] = []
@@ -134,7 +134,7 @@ def test_why_a_bus_cannot_be_opened_is_reported_once(caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
-def test_no_link_is_reported_once_and_its_coming_too(station, caplog, monkeypatch):
+def test_missing_link_is_reported_once_and_its_return_too(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.agent.link._CHECK_S", 0.01)
     bus = station.router.attach_unit()
     bus.link_down()
@@ -147,7 +147,7 @@ def test_no_link_is_reported_once_and_its_coming_too(station, caplog, monkeypatc
     assert caplog.text.count("no link") == 1
 
 
-def test_a_link_that_is_back_before_it_is_known_why_it_was_not_is_not_called_away(
+def test_link_that_returns_before_its_reason_is_known_is_not_reported_lost(
     station, caplog, monkeypatch
 ):
     monkeypatch.setattr("edge.agent.link._CHECK_S", 0.01)
@@ -173,7 +173,7 @@ def test_a_link_that_is_back_before_it_is_known_why_it_was_not_is_not_called_awa
     assert "no link" not in caplog.text
 
 
-def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
+def test_link_that_stays_away_is_opened_again(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.agent.link._CHECK_S", 0.005)
     monkeypatch.setattr("edge.agent.link._REOPEN_AFTER_S", 0.05)
     opened = []
@@ -194,8 +194,8 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
-def test_a_link_that_is_wanted_again_and_again_is_checked_no_sooner(station, monkeypatch):
-    """The agent asks for it with every batch; hurried checks gave up a slow link too early."""
+def test_repeated_requests_for_a_link_check_it_no_sooner(station, monkeypatch):
+    """The agent requests it with every batch; hurried checks gave up a slow link too early."""
     monkeypatch.setattr("edge.agent.link._CHECK_S", PATIENCE_S)
     monkeypatch.setattr("edge.agent.link._REOPEN_AFTER_S", 1000 * PATIENCE_S)
     checks: list[int] = []
@@ -210,14 +210,14 @@ def test_a_link_that_is_wanted_again_and_again_is_checked_no_sooner(station, mon
     until(lambda: checks)
     for _ in range(100):
         link.set_up(up=True)
-        time.sleep(0.001)  # a worker that was woken would check now
+        time.sleep(0.001)  # a woken worker would check now
     link.set_up(up=False)
     link.close()
     assert len(checks) == 1
 
 
-def test_a_link_that_is_lost_is_probed_for_and_opened_anew_at_once(station, monkeypatch):
-    """One that never was is given longer: connecting takes a moment."""
+def test_lost_link_is_probed_and_opened_again_at_once(station, monkeypatch):
+    """A link that never was is given longer: connecting takes a moment."""
     monkeypatch.setattr("edge.agent.link._CHECK_S", 0.005)
     monkeypatch.setattr("edge.agent.link._REOPEN_AFTER_S", 1e6)
     opened = []
@@ -238,8 +238,8 @@ def test_a_link_that_is_lost_is_probed_for_and_opened_anew_at_once(station, monk
     link.close()
 
 
-def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(station, tmp_path):
-    """It would go on, look well to whoever watches it, and never be heard again."""
+def test_agent_with_a_stopped_link_ends_to_be_restarted(station, tmp_path):
+    """It would continue, look healthy to its supervisor, and never be received again."""
     data = UnitDataFolder(tmp_path / "u1")
     config = EdgeConfig("simulated:straight", unit="u1", tracker="none", data=tmp_path)
     source = open_source(config.source)
@@ -252,8 +252,8 @@ def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(statio
     data.close()
 
 
-def test_a_bus_that_cannot_be_asked_ends_no_agent(station, tmp_path, caplog):
-    """The link opens it anew; the wearer's path does not begin anew for it."""
+def test_unusable_bus_ends_no_agent(station, tmp_path, caplog):
+    """The link opens it again; the wearer's path does not begin anew for it."""
     asked: list[str] = []
     stop = threading.Event()
 
@@ -279,8 +279,8 @@ def test_a_bus_that_cannot_be_asked_ends_no_agent(station, tmp_path, caplog):
     data.close()
 
 
-def test_an_agent_that_cannot_be_made_leaves_nothing_running(station, tmp_path, monkeypatch):
-    """A link that is open keeps the program from ending, and its service from starting it again."""
+def test_failed_start_of_an_agent_leaves_nothing_running(station, tmp_path, monkeypatch):
+    """An open link keeps the program from ending, and its service from starting it again."""
 
     def fail(_: object) -> None:
         raise StoreError("the journal cannot be read")
@@ -299,8 +299,8 @@ def test_an_agent_that_cannot_be_made_leaves_nothing_running(station, tmp_path, 
 
 
 @pytest.mark.parametrize(("fails", "reported"), [(True, FAILED), (False, "the source ended")])
-def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fails, reported):
-    """What it must not forget is known again when it is started again."""
+def test_agent_with_a_failed_source_was_not_stopped(station, tmp_path, fails, reported):
+    """Its state that must survive is restored when it is started again."""
 
     class Broken(TabletopSource):
         def batches(self) -> Iterator[SensorBatch]:
@@ -319,7 +319,7 @@ def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fai
 
 
 def how_it_stopped(data: UnitDataFolder) -> str:
-    """By the last word in its journal."""
+    """The last stop message in its journal."""
     journal = Journal(data.journal, lambda: 1, 0, 10**9)
     event = decode(EVENT, next(journal.earlier_alerts(EVENT)).payload)
     journal.close()
@@ -328,7 +328,7 @@ def how_it_stopped(data: UnitDataFolder) -> str:
     return event.detail
 
 
-def test_an_answer_that_hangs_with_the_disk_keeps_no_link_from_its_end(station, monkeypatch):
+def test_answer_that_hangs_with_the_disk_does_not_block_the_end_of_the_link(station, monkeypatch):
     monkeypatch.setattr("edge.agent.link._CLOSING_S", 0.2)
     asked, thawed = threading.Event(), threading.Event()
 

@@ -1,4 +1,4 @@
-"""The mayday on disk: what was last is there after any end, and a bad disk holds up nothing."""
+"""The mayday on disk: the last state is there after any end, and a bad disk blocks nothing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def latched(tmp_path: Path):
         latch.close()
 
 
-def test_what_was_last_is_known_after_a_restart(latched, tmp_path: Path) -> None:
+def test_last_state_is_known_after_a_restart(latched, tmp_path: Path) -> None:
     for is_active in (False, True, True, False, False):
         latch = latched()
         latch.set(is_active=is_active)
@@ -38,8 +38,8 @@ def test_what_was_last_is_known_after_a_restart(latched, tmp_path: Path) -> None
     assert list(tmp_path.iterdir()) == []
 
 
-def test_it_is_written_while_the_agent_runs(latched, tmp_path: Path) -> None:
-    """Nobody says goodbye before a power cut."""
+def test_state_is_written_while_the_agent_runs(latched, tmp_path: Path) -> None:
+    """A power cut comes without a goodbye."""
     latch = latched()
     latch.set(is_active=True)
     until((tmp_path / "mayday").exists, "the mayday is written")
@@ -48,10 +48,10 @@ def test_it_is_written_while_the_agent_runs(latched, tmp_path: Path) -> None:
     until(lambda: not (tmp_path / "mayday").exists(), "it is taken back")
 
 
-def test_a_power_cut_between_any_two_steps_leaves_before_or_after(
+def test_power_cut_between_any_two_steps_leaves_before_or_after(
     latched, tmp_path: Path, monkeypatch
 ) -> None:
-    """Every change of a name is of a file that is on the disk, and is brought to it itself."""
+    """Every rename is of a file that is on the disk, and is flushed itself."""
     steps: list[str] = []
 
     def noting(name: str, call: Callable[..., object]) -> Callable[..., object]:
@@ -71,7 +71,7 @@ def test_a_power_cut_between_any_two_steps_leaves_before_or_after(
     latch.set(is_active=False)
     until(lambda: not latch._is_on_disk, "it is taken back")
     assert steps == [
-        "unlink []",  # of what may be left of an earlier try
+        "unlink []",  # rests of an earlier attempt
         "fsync ['mayday.new']",  # the text
         "replace ['mayday.new']",
         "fsync ['mayday']",  # the folder
@@ -81,7 +81,7 @@ def test_a_power_cut_between_any_two_steps_leaves_before_or_after(
 
 
 @pytest.mark.parametrize("left", ["", "\0" * 40])
-def test_what_is_left_of_a_write_that_was_cut_off_is_nothing(latched, tmp_path, left) -> None:
+def test_rest_of_an_interrupted_write_is_ignored(latched, tmp_path, left) -> None:
     (tmp_path / "mayday.new").write_text(left)
     latch = latched()
     assert not latch.was_active
@@ -90,7 +90,7 @@ def test_what_is_left_of_a_write_that_was_cut_off_is_nothing(latched, tmp_path, 
     assert latched().was_active
 
 
-def test_a_disk_that_refuses_is_reported_and_tried_again(latched, tmp_path, monkeypatch) -> None:
+def test_refusing_disk_is_reported_and_retried(latched, tmp_path, monkeypatch) -> None:
     def refuse(_: Path) -> None:
         raise OSError(28, "No space left on device")
 
@@ -104,7 +104,7 @@ def test_a_disk_that_refuses_is_reported_and_tried_again(latched, tmp_path, monk
     assert latched().was_active
 
 
-def test_a_disk_that_cannot_be_read_keeps_no_unit_from_starting(latched, monkeypatch) -> None:
+def test_unreadable_disk_prevents_no_start(latched, monkeypatch) -> None:
     def refuse(_: Path) -> None:
         raise OSError(5, "Input/output error")
 

@@ -1,4 +1,4 @@
-"""What becomes of a mayday, as its wearer is notified of it."""
+"""Progress of a mayday, with the notices to its wearer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def acknowledgement(seq: int, boot_id: int = BOOT) -> Command:
     )  # fmt: skip
 
 
-def test_each_call_is_received_once() -> None:
+def test_each_mayday_is_received_once() -> None:
     progress = MaydayProgress()
     progress.note_own([event(EventKind.MAYDAY, 7)])
     progress.note_received(6)
@@ -35,7 +35,7 @@ def test_each_call_is_received_once() -> None:
     ("boot_id", "seq", "is_of_it"),
     [(BOOT, 7, True), (BOOT, 20, True), (BOOT, 6, False), (4, 7, False)],
 )
-def test_an_acknowledgement_is_of_the_newest_call_or_of_none(
+def test_acknowledgement_belongs_to_the_newest_mayday_or_to_none(
     boot_id: int, seq: int, is_of_it: bool
 ) -> None:
     progress = MaydayProgress()
@@ -47,7 +47,7 @@ def test_an_acknowledgement_is_of_the_newest_call_or_of_none(
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED])
-def test_another_call_and_its_end_are_not_acknowledged_by_the_one_before(kind: EventKind) -> None:
+def test_another_mayday_and_its_end_are_not_acknowledged_by_the_one_before(kind: EventKind) -> None:
     progress = MaydayProgress()
     progress.note_own([event(EventKind.MAYDAY, 7)])
     progress.note_acknowledged("m1")

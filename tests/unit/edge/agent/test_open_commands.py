@@ -27,7 +27,7 @@ def ids(commands: OpenCommands) -> list[str]:
     return [one.command_id for one in commands]
 
 
-def test_what_the_wearer_is_notified_of_outlives_a_restart_and_the_rest_is_left_out(path) -> None:
+def test_notified_commands_survive_a_restart_and_others_do_not(path) -> None:
     with closing(OpenCommands(path)) as commands:
         commands.add(command("a", CommandKind.EVACUATE))
         commands.add(command("b", CommandKind.TEXT, text="come out"))
@@ -40,7 +40,7 @@ def test_what_the_wearer_is_notified_of_outlives_a_restart_and_the_rest_is_left_
         ]
 
 
-def test_a_kill_keeps_what_was_written(path) -> None:
+def test_kill_keeps_written_commands(path) -> None:
     with closing(OpenCommands(path)) as killed:
         killed.add(command("a", CommandKind.EVACUATE))
         until(lambda: path.exists() and b'"a"' in path.read_bytes())
@@ -48,7 +48,7 @@ def test_a_kill_keeps_what_was_written(path) -> None:
             assert ids(commands) == ["a"]
 
 
-def test_an_answer_closes_all_and_time_those_that_are_over(path) -> None:
+def test_answer_closes_all_and_time_closes_the_expired(path) -> None:
     with closing(OpenCommands(path)) as commands:
         commands.add(command("a", CommandKind.EVACUATE, expires_ns=100))
         commands.add(command("b", CommandKind.LOCATE))
@@ -62,7 +62,7 @@ def test_an_answer_closes_all_and_time_those_that_are_over(path) -> None:
         assert ids(commands) == []
 
 
-def test_a_start_that_changes_nothing_writes_nothing(path) -> None:
+def test_start_without_changes_writes_nothing(path) -> None:
     with closing(OpenCommands(path)):
         pass
     assert not path.exists(), "there is nothing to keep"
@@ -74,7 +74,7 @@ def test_a_start_that_changes_nothing_writes_nothing(path) -> None:
     assert (path.stat().st_ino, path.stat().st_mtime_ns) == (written.st_ino, written.st_mtime_ns)
 
 
-def test_a_damaged_file_is_written_anew_once(path) -> None:
+def test_damaged_file_is_rewritten_once(path) -> None:
     path.write_bytes(b"[1]")
     with closing(OpenCommands(path)):
         pass
@@ -83,7 +83,7 @@ def test_a_damaged_file_is_written_anew_once(path) -> None:
         assert commands.fault == ""
 
 
-def test_one_that_ends_is_kept_no_more(path) -> None:
+def test_ended_command_is_kept_no_more(path) -> None:
     with closing(OpenCommands(path)) as commands:
         commands.add(command("a", CommandKind.EVACUATE))
         commands.add(command("b", CommandKind.TEXT, text="x"))
@@ -95,21 +95,21 @@ def test_one_that_ends_is_kept_no_more(path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"\0" * 40, b"[1]", b'[{"command_id":"a"}]'])
-def test_a_damaged_file_stops_no_unit_and_is_reported(path, content) -> None:
+def test_damaged_file_stops_no_unit_and_is_reported(path, content) -> None:
     path.write_bytes(content)
     with closing(OpenCommands(path)) as commands:
         assert ids(commands) == []
         assert "which commands were open cannot be read" in commands.fault
 
 
-def test_a_disk_that_takes_nothing_is_a_fault_and_the_command_stands(tmp_path: Path) -> None:
+def test_refusing_disk_is_a_fault_and_the_command_stays(tmp_path: Path) -> None:
     with closing(OpenCommands(tmp_path / "nowhere" / "open_commands.json")) as commands:
         commands.add(command("a", CommandKind.EVACUATE))
         until(lambda: "would not survive a restart" in commands.fault)
         assert ids(commands) == ["a"]
 
 
-def test_a_flood_of_commands_is_bounded(path) -> None:
+def test_flood_of_commands_is_bounded(path) -> None:
     with closing(OpenCommands(path)) as commands:
         for number in range(500):
             commands.add(command(str(number), CommandKind.TEXT, text="x"))

@@ -1,4 +1,6 @@
-"""What is sent is on disk before, in order; a bus or a message that fails costs no other."""
+"""The outbox: messages are on disk before they are sent, in order; a failing bus or message costs
+no other.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ from shared.messages import EventKind, Temperature, UnitEvent
 from tests.rig.waiting import until
 
 
-def test_everything_is_sent_in_order_and_was_on_disk_before(journal, journal_writer, stamper):
+def test_messages_are_sent_in_order_and_were_on_disk_before(journal, journal_writer, stamper):
     sent = []
 
     def publish(key: str, payload: bytes, qos: Qos) -> None:
@@ -33,9 +35,9 @@ def test_everything_is_sent_in_order_and_was_on_disk_before(journal, journal_wri
     assert sent[-1][0::2] == ("muster/v1/FF-01/alert/event", Qos.ALERT)
 
 
-def test_what_is_put_at_once_is_written_at_once(journal, journal_writer, stamper, monkeypatch):
-    """A mayday that is still latched is said with the start: a boot that is cut off between the two
-    would leave a start that knows of no mayday.
+def test_messages_put_together_are_written_together(journal, journal_writer, stamper, monkeypatch):
+    """A latched mayday is sent with the start: a boot that ends between the two would leave a start
+    without its mayday.
     """
     written: list[list[int]] = []
     append = journal.append
@@ -49,7 +51,7 @@ def test_what_is_put_at_once_is_written_at_once(journal, journal_writer, stamper
     def first_words():
         yield UnitEvent(stamper.header(), EventKind.STARTED)
         outbox.put((UnitEvent(stamper.header(), EventKind.FALL),))
-        until(lambda: written)  # the outbox has taken all that was there
+        until(lambda: written)  # the outbox has taken all of them
         yield UnitEvent(stamper.header(), EventKind.MAYDAY)
 
     outbox = Outbox("FF-01", journal_writer, lambda key, payload, qos: None)
@@ -58,7 +60,7 @@ def test_what_is_put_at_once_is_written_at_once(journal, journal_writer, stamper
     assert written == [[2], [1, 3]]
 
 
-def test_a_bus_that_fails_ends_nothing(journal, journal_writer, stamper, caplog):
+def test_failing_bus_ends_nothing(journal, journal_writer, stamper, caplog):
     sent = []
 
     def publish(key: str, payload: bytes, qos: Qos) -> None:
@@ -76,9 +78,7 @@ def test_a_bus_that_fails_ends_nothing(journal, journal_writer, stamper, caplog)
     assert len(caplog.records) == 1
 
 
-def test_what_cannot_be_put_into_bytes_does_not_cost_the_alert_behind_it(
-    journal, journal_writer, stamper
-):
+def test_unencodable_message_does_not_cost_the_alert_behind_it(journal, journal_writer, stamper):
     sent = []
     outbox = Outbox("FF-01", journal_writer, lambda key, payload, qos: sent.append(key))
     nonsense = Temperature(stamper.header(), float("nan"))
@@ -88,7 +88,7 @@ def test_what_cannot_be_put_into_bytes_does_not_cost_the_alert_behind_it(
     assert [entry.seq for entry in journal.read(journal.boot_id, 1, 9)] == [2]
 
 
-def test_an_alert_does_not_wait_for_the_group(journal, journal_writer, stamper, monkeypatch):
+def test_alert_does_not_wait_for_the_group(journal, journal_writer, stamper, monkeypatch):
     monkeypatch.setattr("edge.agent.outbox._GROUP_S", 60.0)
     sent = []
     outbox = Outbox("FF-01", journal_writer, lambda key, payload, qos: sent.append(key))
@@ -98,7 +98,7 @@ def test_an_alert_does_not_wait_for_the_group(journal, journal_writer, stamper, 
     outbox.close()
 
 
-def test_what_is_not_urgent_is_written_with_what_comes_next(
+def test_message_that_is_not_urgent_is_written_with_the_next(
     journal, journal_writer, stamper, monkeypatch
 ):
     """Each commit waits for the disk, and wears it."""

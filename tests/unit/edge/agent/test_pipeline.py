@@ -1,4 +1,4 @@
-"""What a unit sends of its path and how often; the batching of its samples makes no difference."""
+"""Messages of a unit's path and their rates, in any batching of its samples."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_channels_have_the_rates_of_the_table():
     assert len(of(messages, UnitDescription)) == 2
 
 
-def test_it_begins_with_a_start_and_a_description():
+def test_messages_begin_with_a_start_and_a_description():
     event, description = pipeline().start()
     assert isinstance(event, UnitEvent)
     assert event.kind is EventKind.STARTED
@@ -62,7 +62,7 @@ def replace_header(position: Position):
     }
 
 
-def test_a_position_says_what_the_row_says():
+def test_position_equals_its_row():
     position = of(steps(pipeline(), walk(1000), []), Position)[-1]
     t_s = position.header.t_mono_ns / NS_PER_S
     assert position.north_m == pytest.approx(t_s)
@@ -91,7 +91,7 @@ def test_rows_that_are_no_numbers_are_counted_and_not_sent():
     assert of(messages, Status)[-1].tracker_rows_dropped == 300
 
 
-def test_the_position_rate_can_be_changed_on_the_way():
+def test_position_rate_can_be_changed_during_the_run():
     pipe = pipeline()
     pipe.set_position_rate(20.0)
     assert len(of(steps(pipe, walk(1000), [5] * 199), Position)) == 200
@@ -104,7 +104,7 @@ def test_messages_carry_time_on_the_units_clock():
     assert last.header.t_mono_ns == 50 * NS_PER_S + round(last.north_m * NS_PER_S / 2)
 
 
-def test_sequence_numbers_have_no_hole_and_rise():
+def test_sequence_numbers_have_no_gap_and_rise():
     messages = steps(pipeline(), walk(3000), [5] * 599)
     assert [message.header.seq for message in messages] == list(range(1, len(messages) + 1))
 
@@ -116,14 +116,14 @@ def test_walking_shows_steps_and_cadence():
     assert status.cadence_hz == pytest.approx(2.0)
 
 
-def test_a_sensor_that_delivers_nothing_usable_is_a_fault_reported_once():
+def test_sensor_without_usable_samples_is_a_fault_reported_once():
     imu = walk(400)
     spoiled = replace(imu, accel_mps2=np.full((400, 3), np.nan))
     events = of(steps(pipeline(), spoiled, [5] * 79), UnitEvent)
     assert [event.kind for event in events] == [EventKind.SENSOR_FAULT]
 
 
-def test_a_gap_and_a_clock_that_goes_back_are_reported():
+def test_gap_and_clock_that_goes_back_are_reported():
     pipe = pipeline()
     steps(pipe, walk(100), [])
     (gap,) = of(steps(pipe, walk(100, 5.0), []), UnitEvent)
@@ -132,7 +132,7 @@ def test_a_gap_and_a_clock_that_goes_back_are_reported():
     assert "went back" in back.detail
 
 
-def test_a_clock_that_jumps_a_day_in_either_direction_stops_nothing():
+def test_clock_that_jumps_a_day_in_either_direction_stops_nothing():
     pipe = pipeline()
     steps(pipe, walk(500), [5] * 99)
     for start_s in (86_400.0, 0.0):
@@ -141,7 +141,7 @@ def test_a_clock_that_jumps_a_day_in_either_direction_stops_nothing():
         assert len(of(messages, Status)) == 5
 
 
-def test_a_trunk_that_lies_down_is_in_the_status_with_its_confidence():
+def test_trunk_that_lies_down_is_in_the_status_with_its_confidence():
     acts = [Act(BodyPosture.STANDING, 15.0, walks=True), Act(BodyPosture.PRONE, 10.0)]
     chest = posed_body(acts, np.random.default_rng(1)).samples["chest"]
     sensor = FittedSensor(SensorDescription("fake", 100.0))

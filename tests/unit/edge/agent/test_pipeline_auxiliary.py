@@ -1,4 +1,4 @@
-"""What a unit sends beside its path: fixes, warmth, alerts, what is near, its calibration."""
+"""Messages beside the path: fixes, temperatures, alerts, sightings, the calibration."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_gps_and_temperature_come_once_a_second():
     assert of(messages, Temperature)[0].ambient_degc == 21.5
 
 
-def test_what_is_not_a_number_is_not_sent():
+def test_value_that_is_not_a_number_is_not_sent():
     pipe = pipeline()
     fix = GpsSample(0, math.nan, 8.0, 1.0, math.nan, math.nan, 3, 9, math.nan, math.nan)
     messages = pipe.step(others_only(AmbientSample(0, math.nan), fix))
@@ -67,7 +67,7 @@ def test_what_is_not_a_number_is_not_sent():
     sent.to_wire()
 
 
-def test_mayday_latches_until_the_wearer_takes_it_back():
+def test_mayday_is_latched_until_the_wearer_cancels_it():
     pipe = pipeline()
     pressed = of(pipe.take_presses((ButtonPress(1, "mayday"),)), UnitEvent)
     assert [event.kind for event in pressed] == [EventKind.MAYDAY]
@@ -80,8 +80,8 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
 
 
 @pytest.mark.parametrize(("again_s", "says"), [(0.5, 0), (2.9, 0), (3.1, 1), (600.0, 1), (-5.0, 1)])
-def test_a_mayday_that_is_pressed_again_is_stated_again(again_s: float, says: int):
-    """The first one has been resolved, and now its wearer is in need again."""
+def test_second_press_is_sent_again(again_s: float, says: int):
+    """The first mayday has been resolved, and its wearer is in need again."""
     pipe = pipeline()
     pipe.take_presses((ButtonPress(10 * NS_PER_S, "mayday"),))
     again_ns = round((10.0 + again_s) * NS_PER_S)
@@ -89,7 +89,7 @@ def test_a_mayday_that_is_pressed_again_is_stated_again(again_s: float, says: in
     assert [event.kind for event in events] == [EventKind.MAYDAY] * says
 
 
-def test_a_mayday_that_was_taken_back_is_stated_anew_at_once():
+def test_press_after_a_cancellation_is_sent_at_once():
     pipe = pipeline()
     kinds = [
         event.kind
@@ -99,10 +99,10 @@ def test_a_mayday_that_was_taken_back_is_stated_anew_at_once():
     assert kinds == [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
 
 
-def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_are_remembered(
+def test_at_most_a_thousand_sighted_devices_are_kept(
     monkeypatch: pytest.MonkeyPatch,
 ):
-    """Telephones change what they call themselves every few minutes, all day."""
+    """Telephones change their addresses every few minutes, all day."""
     monkeypatch.setattr("edge.agent.pipeline._SIGHTED_MAX", 3)
     pipe = pipeline()
     for number in range(20):
@@ -111,14 +111,14 @@ def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_ar
     assert len(pipe._sighted_ns) <= 3
 
 
-def test_what_is_near_is_reported_though_the_clock_went_back():
+def test_sightings_are_reported_though_the_clock_went_back():
     pipe = pipeline()
     for t_s in (7200, 3600, 3601):
         near = SightingSample(t_s * NS_PER_S, "beacon", "door-3", 2.5, math.nan)
         assert len(of(pipe.step(others_only(near)), Sighting)) == 1
 
 
-def test_what_is_near_is_reported_once_a_second_and_nothing_costs_no_number():
+def test_sightings_are_reported_once_a_second_and_none_takes_no_number():
     pipe = pipeline()
     hour_ns = 3600 * NS_PER_S
     near = SightingSample(hour_ns, "beacon", "door-3", 2.5, math.nan)
@@ -142,7 +142,7 @@ def test_what_is_near_is_reported_once_a_second_and_nothing_costs_no_number():
     assert seqs == list(range(seqs[0], seqs[0] + len(seqs)))
 
 
-def test_status_tells_battery_and_journal():
+def test_status_has_battery_and_journal():
     pipe = pipeline()
     pipe.step(others_only(BatterySample(0, 0.42)))
     pipe.set_journal_pending(17)
@@ -150,7 +150,7 @@ def test_status_tells_battery_and_journal():
     assert (status.battery, status.journal_pending) == (0.42, 17)
 
 
-def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which():
+def test_tracker_gets_calibrated_samples_and_the_description_names_the_calibration():
     seen: list[ImuBatch] = []
 
     class Listening(StraightAhead):
@@ -177,12 +177,12 @@ def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which()
     assert imu.gyro_radps[0].tolist() == [0.0, 0.0, 0.0]
 
 
-def test_without_a_calibration_the_description_names_none():
+def test_description_without_a_calibration_names_none():
     (description,) = of(pipeline().start(), UnitDescription)
     assert (description.calibration, description.calibrated_s) == ("", None)
 
 
-def test_magnetic_north_is_stated_where_the_tracker_knows_it():
+def test_magnetic_north_is_sent_where_the_tracker_knows_it():
     def norths(std_rad: float):
         messages = steps(pipeline(StraightAhead(north_std_rad=std_rad)), walk(100), [100])
         return {position.magnetic_north for position in of(messages, Position)}

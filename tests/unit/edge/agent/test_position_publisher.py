@@ -1,4 +1,4 @@
-"""What a position says of the way since the one before it: heading, storeys, doubts, the air."""
+"""Content of a position about the path since the one before: heading, storeys, doubts, pressure."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def stream(rate_hz: float = 2.0) -> PositionPublisher:
 
 
 def rows(position_n_m: Floats, from_s: float = 0.0) -> TrackBatch:
-    """Of somebody who is at these places (n, 3), twenty a second."""
+    """Rows at these places (n, 3), twenty a second."""
     n = len(position_n_m)
     return TrackBatch(
         t_ns=np.rint((from_s + np.arange(n) / RATE_HZ) * NS_PER_S).astype(np.int64),
@@ -55,7 +55,7 @@ def standing(n: int = 40) -> Floats:
 
 
 @pytest.mark.parametrize("heading_deg", [0, 45, 90, 135, 180, 225, 270, 315])
-def test_the_heading_is_that_of_travel_clockwise_from_north(heading_deg: int) -> None:
+def test_heading_is_that_of_travel_clockwise_from_north(heading_deg: int) -> None:
     angle_rad = math.radians(heading_deg)
     way = line((5.0 * math.cos(angle_rad), 5.0 * math.sin(angle_rad), 0.0))
     stated = stream().push(rows(way), LIVE)[-1].heading_rad
@@ -63,7 +63,7 @@ def test_the_heading_is_that_of_travel_clockwise_from_north(heading_deg: int) ->
     assert math.remainder(stated - angle_rad, math.tau) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
+def test_small_motions_keep_the_heading_of_the_last_half_metre() -> None:
     out = stream(rate_hz=RATE_HZ)
     way = np.array([[0.0, 0, 0], [0, 0.55, 0], [0.45, 0.55, 0], [0.3, 0.5, 0], [-0.2, 0.6, 0]])
     stated = [position.heading_rad for position in out.push(rows(way), LIVE)]
@@ -74,7 +74,7 @@ def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
     assert turned.heading_rad == pytest.approx(math.pi)
 
 
-def test_storeys_are_counted_up_and_down_and_a_landing_counts_once() -> None:
+def test_storeys_are_counted_up_and_down_and_a_landing_once() -> None:
     out = stream(rate_hz=RATE_HZ)
     assert out.floors_climbed == 0
     heights_m = [0.0, 1.95, 2.05, 3.0, 1.05, 0.95, -1.95, -2.05, -6.0]
@@ -85,7 +85,7 @@ def test_storeys_are_counted_up_and_down_and_a_landing_counts_once() -> None:
     assert counted == [0, 0, 1, 1, 1, 0, 0, -1, -2]
 
 
-def test_what_lasts_for_a_moment_between_two_positions_is_reported_once_with_the_next() -> None:
+def test_flag_of_a_moment_between_two_positions_is_in_the_next() -> None:
     out = stream()
     track = rows(standing(42))
     track.quality[3:5] = (Quality.LOST, Quality.DEGRADED)
@@ -96,7 +96,7 @@ def test_what_lasts_for_a_moment_between_two_positions_is_reported_once_with_the
 
 
 @pytest.mark.parametrize("at_once", [1, 3, 10, 100])
-def test_doubts_are_the_same_however_rows_are_batched(at_once: int) -> None:
+def test_doubts_are_the_same_in_any_batching(at_once: int) -> None:
     whole = rows(standing(42))
     whole.quality[[3, 25]] = Quality.DEGRADED
     whole.reasons[[3, 25]] = (Reason.SAMPLE_GAP, Reason.NO_STANCE)
@@ -132,7 +132,7 @@ def test_doubts_of_a_row_that_is_no_number_go_with_the_next_position() -> None:
 
 
 @pytest.mark.parametrize("column", ["position_n_m", "velocity_n_mps", "position_cov_m2"])
-def test_a_row_with_anything_that_is_no_number_is_not_sent(column: str) -> None:
+def test_row_with_any_value_that_is_no_number_is_not_sent(column: str) -> None:
     out = stream(rate_hz=RATE_HZ)
     track = rows(standing(3))
     getattr(track, column)[1].flat[1] = np.inf
@@ -140,7 +140,7 @@ def test_a_row_with_anything_that_is_no_number_is_not_sent(column: str) -> None:
     assert out.rows_dropped == 1
 
 
-def test_how_sure_it_is_and_where_the_ellipse_points() -> None:
+def test_uncertainty_and_direction_of_the_ellipse() -> None:
     track = rows(standing(1))
     track.position_cov_m2[0] = [[0.04, -0.01, 0.0], [-0.01, 0.01, 0.0], [0.0, 0.0, 0.09]]
     (position,) = stream().push(track, LIVE)
@@ -159,7 +159,7 @@ def test_rounding_makes_no_correlation_beyond_one(covariance: float, correlation
     assert position.correlation_ne == correlation
 
 
-def test_nothing_known_of_a_variance_makes_no_error() -> None:
+def test_unknown_variance_is_no_error() -> None:
     track = rows(standing(1))
     track.position_cov_m2[0] = 0.0
     track.position_cov_m2[0, 2, 2] = -1e-9
@@ -169,7 +169,7 @@ def test_nothing_known_of_a_variance_makes_no_error() -> None:
     assert position.heading_std_rad == math.pi
 
 
-def test_no_rows_are_no_positions_and_the_path_goes_on() -> None:
+def test_no_rows_give_no_positions_and_the_path_continues() -> None:
     publishing = stream(5.0)
     (first,) = publishing.push(rows(np.ones((1, 3))), LIVE)
     assert publishing.push(rows(np.zeros((0, 3)), from_s=0.5), LIVE) == []
@@ -178,7 +178,7 @@ def test_no_rows_are_no_positions_and_the_path_goes_on() -> None:
 
 
 @pytest.mark.parametrize(("std_rad", "is_reported"), [(0.79, True), (0.81, False), (np.nan, False)])
-def test_magnetic_north_is_spoken_of_where_it_tells_something(
+def test_magnetic_north_is_sent_where_it_adds_information(
     std_rad: float, is_reported: bool
 ) -> None:
     track = rows(standing(1))
@@ -196,7 +196,7 @@ def air(from_s: float, pressures_pa: list[float]) -> ImuBatch:
     return ImuBatch(t_ns, none, none, pressure_pa=np.array(pressures_pa))
 
 
-def test_the_pressure_is_that_of_the_row_and_not_of_what_came_since() -> None:
+def test_pressure_is_that_of_the_row_and_not_a_later_one() -> None:
     out = stream(rate_hz=RATE_HZ)
     out.take_pressure(air(0.0, [1000.0, 1001.0, np.nan, 1003.0]))
     out.take_pressure(air(0.2, []))
@@ -204,7 +204,7 @@ def test_the_pressure_is_that_of_the_row_and_not_of_what_came_since() -> None:
     assert [one.pressure_pa for one in stated] == [1000.0, 1001.0, 1001.0, 1003.0]
 
 
-def test_pressures_are_kept_for_as_long_as_rows_may_be_held_back() -> None:
+def test_pressures_are_kept_for_as_long_as_rows_may_be_delayed() -> None:
     out = stream(rate_hz=RATE_HZ)
     for second in range(10):
         out.take_pressure(air(second, [1000.0 + second] * RATE_HZ))
@@ -216,10 +216,10 @@ def test_pressures_are_kept_for_as_long_as_rows_may_be_held_back() -> None:
 
 
 @pytest.mark.parametrize(("after_s", "pressure_pa"), [(3.0, 1001.0), (3.2, None)])
-def test_a_barometer_that_has_failed_does_not_go_on_with_its_last_reading(
+def test_failed_barometer_does_not_repeat_its_last_reading(
     after_s: float, pressure_pa: float | None
 ) -> None:
-    """Whoever climbs meanwhile would stay on the floor where it failed."""
+    """A climbing wearer would stay on the floor where it failed."""
     out = stream(rate_hz=RATE_HZ)
     out.take_pressure(air(0.0, [1000.0, 1001.0]))
     out.take_pressure(air(0.1, [math.nan] * 80))
@@ -227,7 +227,7 @@ def test_a_barometer_that_has_failed_does_not_go_on_with_its_last_reading(
     assert position.pressure_pa == pressure_pa
 
 
-def test_before_the_first_reading_and_without_a_barometer_there_is_no_pressure() -> None:
+def test_no_pressure_before_the_first_reading_and_without_a_barometer() -> None:
     out = stream(rate_hz=RATE_HZ)
     (position,) = out.push(rows(standing(1)), LIVE)
     assert position.pressure_pa is None
@@ -237,7 +237,7 @@ def test_before_the_first_reading_and_without_a_barometer_there_is_no_pressure()
     assert position.pressure_pa is None
 
 
-def test_a_clock_that_went_back_leaves_no_pressure_of_what_is_to_come() -> None:
+def test_clock_that_went_back_leaves_no_pressure_of_the_future() -> None:
     out = stream(rate_hz=RATE_HZ)
     out.take_pressure(air(3.0, [900.0] * 40))
     out.take_pressure(air(1.0, [1000.0] * 5))

@@ -1,4 +1,4 @@
-"""It is known at once when a station takes connections again."""
+"""Probe of stations: a station that accepts connections again is detected at once."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ def listen(port: int) -> socket.socket:
 
 
 @pytest.mark.parametrize("proto", ["tcp", "tls"])
-def test_who_listens_is_there(port: int, proto: str) -> None:
+def test_listening_station_is_found(port: int, proto: str) -> None:
     with listen(port):
         assert ReachabilityProbe([f"{proto}/127.0.0.1:{port}"]).wait(5.0)
 
 
-def test_a_machine_without_a_station_is_not(port: int) -> None:
+def test_machine_without_a_station_is_not_found(port: int) -> None:
     probe = ReachabilityProbe([f"tcp/127.0.0.1:{port}"])
     assert not probe.wait(0.5)
     probe.close()
 
 
-def test_a_name_that_nobody_knows_is_not_there() -> None:
+def test_unknown_name_is_not_found() -> None:
     assert not ReachabilityProbe(["tls/station.invalid:7447"]).wait(0.2)
 
 
-def test_one_of_two_stations_is_enough(port: int) -> None:
+def test_one_of_two_stations_suffices(port: int) -> None:
     with listen(port):
         assert ReachabilityProbe([f"tcp/127.0.0.1:{free_port()}", f"tcp/127.0.0.1:{port}"]).wait(
             5.0
@@ -55,7 +55,7 @@ def test_an_ipv6_station_is_found() -> None:
         assert ReachabilityProbe([f"tcp/[::1]:{listening.getsockname()[1]}"]).wait(5.0)
 
 
-def test_a_station_is_found_by_whichever_address_of_its_name_it_listens_on(
+def test_station_is_found_by_any_address_of_its_name(
     port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """``localhost`` is mostly ::1 first, and a station listens on 0.0.0.0."""
@@ -72,7 +72,7 @@ def test_a_station_is_found_by_whichever_address_of_its_name_it_listens_on(
         assert ReachabilityProbe([f"tcp/localhost:{port}"]).wait(5.0)
 
 
-def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> None:
+def test_station_that_comes_during_the_wait_is_noticed(port: int) -> None:
     probe = ReachabilityProbe([f"tcp/127.0.0.1:{port}"])
     stations: list[socket.socket] = []
     later = threading.Timer(0.5, lambda: stations.append(listen(port)))
@@ -84,9 +84,9 @@ def test_a_station_that_comes_while_it_is_waited_for_is_noticed(port: int) -> No
     stations[0].close()
 
 
-def test_many_looks_hold_no_more_than_a_few_connections() -> None:
-    """Where packets are thrown away, attempts pile up and the oldest go."""
-    probe = ReachabilityProbe(["tcp/192.0.2.1:7447"])  # nobody has this address
+def test_many_probes_hold_only_a_few_connections() -> None:
+    """Where packets are dropped, attempts pile up and the oldest are given up."""
+    probe = ReachabilityProbe(["tcp/192.0.2.1:7447"])  # an address without a host
     for _ in range(40):
         probe._begin_attempts()
     assert len(probe._attempts) <= 8

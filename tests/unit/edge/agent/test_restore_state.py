@@ -1,4 +1,4 @@
-"""A mayday outlives the unit's sudden end, and only that."""
+"""A mayday survives the sudden end of a unit, and not an orderly one."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ PAGE_BYTES = 4096
 
 
 def boot(path: Path, *kinds: EventKind) -> bool:
-    """One boot that says these; whether it knew of a mayday when it began."""
+    """A boot with these messages; returns whether it knew of a mayday at its begin."""
     journal = Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
     known = mayday_before(journal)
     stamper = Stamper("u1", journal.boot_id, ManualClock())
@@ -64,12 +64,12 @@ def boot(path: Path, *kinds: EventKind) -> bool:
         ((STARTED, MAYDAY, STOPPED), False),
     ],
 )
-def test_what_the_last_boot_stated_last_counts(tmp_path, messages, latched):
+def test_last_message_of_the_last_boot_counts(tmp_path, messages, latched):
     assert not boot(tmp_path, *messages)
     assert boot(tmp_path, STARTED) is latched
 
 
-def test_a_unit_that_failed_and_stated_so_has_not_been_stopped(tmp_path):
+def test_unit_that_reported_its_failure_was_not_stopped(tmp_path):
     """Its service starts it again within a second, and its wearer still waits for help."""
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
     stamper = Stamper("u1", journal.boot_id, ManualClock())
@@ -79,8 +79,8 @@ def test_a_unit_that_failed_and_stated_so_has_not_been_stopped(tmp_path):
     assert boot(tmp_path, STARTED)
 
 
-def test_what_cannot_be_understood_keeps_no_unit_from_starting(tmp_path):
-    """Damage, or the words of a newer program that has been taken back."""
+def test_unreadable_message_prevents_no_start(tmp_path):
+    """Damage, or a message of a newer program that has been removed."""
     boot(tmp_path, STARTED, MAYDAY)
     path = tmp_path / "journal.sqlite"
     with closing(sqlite3.connect(path)) as connection, connection:
@@ -97,8 +97,8 @@ def test_what_cannot_be_understood_keeps_no_unit_from_starting(tmp_path):
 
 
 @pytest.mark.parametrize(("at_last", "latched"), [(MAYDAY, True), (FALL, False)])
-def test_damage_inside_the_journal_keeps_no_unit_from_starting(tmp_path, at_last, latched):
-    """What was said after the part that is damaged is known all the same."""
+def test_damage_inside_the_journal_prevents_no_start(tmp_path, at_last, latched):
+    """Messages behind the damaged part are known all the same."""
     boot(tmp_path, MAYDAY, *[FALL] * 1000, at_last)
     path = tmp_path / "journal.sqlite"
     content = path.read_bytes()
@@ -110,7 +110,7 @@ def test_damage_inside_the_journal_keeps_no_unit_from_starting(tmp_path, at_last
     journal.close()
 
 
-def test_a_mayday_from_before_is_stated_again_first_thing():
+def test_mayday_from_before_is_sent_again_first():
     sensor = SensorDescription("s", 100.0)
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
@@ -124,7 +124,7 @@ def test_a_mayday_from_before_is_stated_again_first_thing():
 
 
 class DeskBoot:
-    """A boot whose desk answers into the journal; ``rates`` are those it has set."""
+    """A boot whose handler answers into the journal; ``rates`` are those that it has set."""
 
     def __init__(self, path: Path) -> None:
         self.journal = Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
@@ -146,7 +146,7 @@ class DeskBoot:
         self.journal.append([JournalRow(r.header.seq, REPLY, 0, encode(r)) for r in replies])
 
 
-def test_what_was_done_before_a_restart_is_not_done_again(tmp_path):
+def test_command_done_before_a_restart_is_not_done_again(tmp_path):
     first = DeskBoot(tmp_path)
     first.take("c1", CommandKind.SET_POSITION_RATE)
     assert first.rates == [10.0]
@@ -158,7 +158,7 @@ def test_what_was_done_before_a_restart_is_not_done_again(tmp_path):
     second.journal.close()
 
 
-def test_what_the_wearer_had_not_acknowledged_is_still_asked_after_a_restart(tmp_path):
+def test_unacknowledged_command_is_still_open_after_a_restart(tmp_path):
     first = DeskBoot(tmp_path)
     first.take("c1", CommandKind.EVACUATE)
     first.keep(*first.command_handler.acknowledge())
@@ -171,7 +171,7 @@ def test_what_the_wearer_had_not_acknowledged_is_still_asked_after_a_restart(tmp
 
 
 class RateBoot:
-    """A boot of a machine that has been on for ``on_s``; its agent was told these rates."""
+    """A boot of a machine that has been on for ``on_s``; its agent received these rates."""
 
     def __init__(self, path: Path, on_s: float, *rates_hz: float, detail: str = "") -> None:
         """``detail`` of a stop in order, or of one that failed; none: it came to a sudden end."""
@@ -196,8 +196,8 @@ class RateBoot:
         journal.close()
 
 
-def test_the_rate_that_was_set_holds_until_the_agent_is_stopped(tmp_path):
-    """It fails and is started again within a second: nobody at the station would know."""
+def test_set_rate_holds_until_the_agent_is_stopped(tmp_path):
+    """It fails and is started again within a second: the station would not know."""
     assert RateBoot(tmp_path, 30.0, 2.0, 0.125, 51.0).known_hz is None
     assert RateBoot(tmp_path, 500.0).known_hz == 0.125
     assert RateBoot(tmp_path, 600.0, detail=FAILED).known_hz == 0.125
@@ -207,7 +207,7 @@ def test_the_rate_that_was_set_holds_until_the_agent_is_stopped(tmp_path):
     assert RateBoot(tmp_path, 1000.0).known_hz is None
 
 
-def test_the_rate_that_was_set_is_gone_when_the_unit_was_switched_off(tmp_path):
+def test_set_rate_is_reset_when_the_unit_was_switched_off(tmp_path):
     """However long it is on by then: it may be another incident, and another commander."""
     RateBoot(tmp_path, 30.0, 2.0)
     assert RateBoot(tmp_path, 40.0).known_hz is None
@@ -218,7 +218,7 @@ def test_the_rate_that_was_set_is_gone_when_the_unit_was_switched_off(tmp_path):
     assert RateBoot(tmp_path, 20_000.0).known_hz is None
 
 
-def test_of_a_boot_of_which_no_event_is_left_no_rate_is_known(tmp_path):
+def test_boot_without_events_gives_no_rate(tmp_path):
     RateBoot(tmp_path, 30.0, 2.0)
     path = tmp_path / "journal.sqlite"
     with closing(sqlite3.connect(path)) as connection, connection:
@@ -227,7 +227,7 @@ def test_of_a_boot_of_which_no_event_is_left_no_rate_is_known(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_newest_answers_are_remembered_across_boots(tmp_path):
+def test_newest_answers_are_kept_across_boots(tmp_path):
     first = DeskBoot(tmp_path)
     for number in range(2 * REMEMBERED + 5):
         first.take(f"c{number}", CommandKind.LOCATE)
@@ -240,7 +240,7 @@ def test_the_newest_answers_are_remembered_across_boots(tmp_path):
 
 
 def stated_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock:
-    """A program that fails within a second and is started again, as it says in its journal."""
+    """A program that fails within a second and is restarted, as its journal shows."""
     Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**9).close()
     clock = ManualClock()
     clock.advance(after_s)
@@ -260,8 +260,8 @@ def stated_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock
     return clock
 
 
-def test_thousands_of_starts_are_not_looked_at_one_by_one(tmp_path, monkeypatch):
-    """Whoever wears the unit waits for it meanwhile."""
+def test_thousands_of_starts_are_not_read_one_by_one(tmp_path, monkeypatch):
+    """The wearer waits for it meanwhile."""
     RateBoot(tmp_path, 0.0, 2.0)
     clock = stated_by_many_boots(tmp_path, 3000, after_s=0.0)
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)
@@ -290,7 +290,7 @@ def counting(function: Callable[..., object], counted: list[int]) -> Callable[..
     return call
 
 
-def test_a_rate_from_before_thousands_of_starts_still_holds(tmp_path):
+def test_rate_from_before_thousands_of_starts_still_holds(tmp_path):
     RateBoot(tmp_path, 30.0, 2.0)
     clock = stated_by_many_boots(tmp_path, 300, after_s=1000.0)
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)

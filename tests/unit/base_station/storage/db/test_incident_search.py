@@ -1,4 +1,4 @@
-"""Incidents are found by place, person, alarm and date, while they are open and afterwards."""
+"""Search of incidents by place, person, alarm and date, while they are open and afterwards."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def found(store: Store, text: str = "", **more: Any) -> list[str]:
     return [one.incident_id for one in IncidentSearch(store).find(query)]
 
 
-def test_a_place_is_found_by_the_beginnings_of_its_words(store: Store) -> None:
+def test_place_is_found_by_the_beginnings_of_its_words(store: Store) -> None:
     report = NoteDispatch("2026-17", "json", type="Dachstuhlbrand", address="Große Straße 7, Ütz")
     encoded = msgspec.json.encode(report).decode()
     add(
@@ -123,7 +123,7 @@ def test_a_place_is_found_by_the_beginnings_of_its_words(store: Store) -> None:
     assert found(store, "harbour") == ["open"], "what is open changes still"
 
 
-def test_a_person_is_found_where_they_were_a_member_or_are_mentioned(store: Store) -> None:
+def test_person_is_found_as_a_member_or_where_mentioned(store: Store) -> None:
     roster = Roster(store, ManualClock())
     ada = roster.add_person("Ada Öst", "", "").person_id
     bo = roster.add_person("Bo Adams", "", "").person_id
@@ -155,7 +155,7 @@ def test_a_person_is_found_where_they_were_a_member_or_are_mentioned(store: Stor
     assert found(store, person="bo") == ["three", "two", "old-1"]
 
 
-def test_an_alarm_is_found_of_members_and_of_the_station(store: Store) -> None:
+def test_alarm_of_members_and_of_the_station_is_found(store: Store) -> None:
     add(
         store,
         incident("one", 100, 200, "", has_members=True),

@@ -1,4 +1,4 @@
-"""Who a person id stands for: on the roster, removed, forgotten, or lost with a database."""
+"""Person behind an id: on the roster, removed, erased, or lost with a database."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from base_station.storage.db.store import Store
 from shared.clock import SystemClock
 
 
-def test_a_person_is_shown_as_the_roster_has_them_now(tmp_path: Path) -> None:
+def test_person_is_shown_as_on_the_present_roster(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         ada = roster.add_person("Ada", "red", "leader")
@@ -29,7 +29,7 @@ def test_a_person_is_shown_as_the_roster_has_them_now(tmp_path: Path) -> None:
         assert Roster(store, SystemClock()).known(ada.person_id) == roster.known(ada.person_id)
 
 
-def test_who_was_removed_from_the_roster_keeps_the_name_in_what_was_before(tmp_path: Path) -> None:
+def test_person_removed_from_the_roster_keeps_the_name_in_earlier_records(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         ada = roster.add_person("Ada", "red", "leader")
@@ -44,7 +44,7 @@ def test_who_was_removed_from_the_roster_keeps_the_name_in_what_was_before(tmp_p
             assert one.known(ada.person_id) == KnownPerson("Ada", "red", "leader")
 
 
-def test_who_was_forgotten_has_no_name_and_gets_none_again(tmp_path: Path) -> None:
+def test_erased_person_has_no_name_and_gets_none_again(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         ada = roster.add_person("Ada", "red", "leader")
@@ -56,7 +56,7 @@ def test_who_was_forgotten_has_no_name_and_gets_none_again(tmp_path: Path) -> No
             assert one.ids_by_name() == {}
 
 
-def test_who_is_lost_with_a_database_is_shown_by_the_id(tmp_path: Path) -> None:
+def test_person_lost_with_a_database_is_shown_by_the_id(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         assert (
@@ -64,7 +64,7 @@ def test_who_is_lost_with_a_database_is_shown_by_the_id(tmp_path: Path) -> None:
         )
 
 
-def test_a_log_of_an_earlier_version_has_the_name_of_then(tmp_path: Path) -> None:
+def test_log_of_an_earlier_version_has_the_recorded_name(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         ada = roster.add_person("Ada Horn", "blue", "leader")

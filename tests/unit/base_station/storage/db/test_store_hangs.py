@@ -1,4 +1,4 @@
-"""A database on a disk that hangs holds nobody up, and says why."""
+"""A database on a hanging disk blocks nobody, and reports the reason."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def store(tmp_path: Path, hangs: Event) -> Iterator[Store]:
         yield store
 
 
-def test_nothing_is_asked_of_a_disk_that_hangs(store: Store, hangs: Event) -> None:
+def test_hanging_disk_gets_no_further_queries(store: Store, hangs: Event) -> None:
     hangs.set()
 
     def refused(asking: AbstractContextManager[Session]) -> None:
@@ -44,7 +44,7 @@ def test_nothing_is_asked_of_a_disk_that_hangs(store: Store, hangs: Event) -> No
         pass
 
 
-def test_who_waits_for_one_whom_the_disk_holds_up_is_reported(store: Store, hangs: Event) -> None:
+def test_wait_for_a_query_on_a_hanging_disk_is_reported(store: Store, hangs: Event) -> None:
     reported: list[str] = []
 
     def change() -> None:
@@ -66,7 +66,7 @@ def test_who_waits_for_one_whom_the_disk_holds_up_is_reported(store: Store, hang
     assert reported[1:] == ["done"]
 
 
-def test_nobody_waits_for_what_a_disk_that_hangs_does_not_take(store: Store, hangs: Event) -> None:
+def test_write_to_a_hanging_disk_is_not_waited_for(store: Store, hangs: Event) -> None:
     projection = SqlProjection(store)
     try:
         hangs.set()

@@ -1,4 +1,4 @@
-"""Which window of a unit's recording is asked for, beside a station whose clock was set back."""
+"""Window of a unit's recording that is requested, beside a station whose clock was set back."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def recorded_ns(tmp_path: Path) -> int:
     return recorded_ns
 
 
-def test_until_now_is_until_what_was_recorded_last(tmp_path: Path, recorded_ns: int) -> None:
+def test_window_until_now_ends_at_the_last_record(tmp_path: Path, recorded_ns: int) -> None:
     config = StationConfig(data=tmp_path)
     for from_ns, to_ns in (window_of(config, "i1"), since(config, 5)):
         assert from_ns == 5
@@ -53,11 +53,11 @@ def test_until_now_is_until_what_was_recorded_last(tmp_path: Path, recorded_ns: 
 
 
 @pytest.mark.usefixtures("recorded_ns")
-def test_an_incident_that_was_closed_ends_there(tmp_path: Path) -> None:
+def test_window_of_a_closed_incident_ends_with_it(tmp_path: Path) -> None:
     assert window_of(StationConfig(data=tmp_path), "i0") == (2, 4)
 
 
-def test_beside_a_log_that_is_over_until_now_is_until_now(tmp_path: Path) -> None:
+def test_window_until_now_beside_an_ended_log_ends_now(tmp_path: Path) -> None:
     with Store(DataFolder(tmp_path).database):
         pass
     before_ns = SystemClock().utc_ns()
