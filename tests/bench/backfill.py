@@ -1,4 +1,4 @@
-"""``muster bench backfill``: one unit's long backlog is fetched while others go on speaking."""
+"""``muster bench backfill``: one unit's long backlog is fetched while others keep publishing."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ class BackfillReport:
 
 def bench_backfill(
     backlog: Annotated[int, typer.Option(min=1, help="Messages that one unit has kept.")] = 100_000,
-    units: Annotated[int, typer.Option(min=1, help="Others, speaking meanwhile.")] = 50,
-    seconds: Annotated[float, typer.Option(min=1.0, help="They speak alone before.")] = 10.0,
+    units: Annotated[int, typer.Option(min=1, help="Other units, which publish meanwhile.")] = 50,
+    seconds: Annotated[float, typer.Option(min=1.0, help="Duration before the backfill.")] = 10.0,
     plain: PlainTcp = False,
     json_file: FiguresFile = None,
 ) -> None:
-    """How fast a station fetches what a unit kept, through its own work, and what that costs the
-    live picture of the others.
+    """Measure the speed at which a station fetches a unit's backlog, and its effect on the delay of
+    other units.
     """
     with Progress(transient=True) as progress:
         report = measure(backlog, units, seconds, progress, plain=plain)

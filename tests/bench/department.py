@@ -1,4 +1,4 @@
-"""``muster bench department``: many stations in summary through a department's own path."""
+"""``muster bench department``: summaries of many stations through a department's own path."""
 
 from __future__ import annotations
 
@@ -52,11 +52,13 @@ class DepartmentReport:
 
 def bench_department(
     stations: Annotated[int, typer.Option(min=1, help="Stations of the department.")] = 200,
-    units: Annotated[int, typer.Option(min=1, help="Units of each.")] = 100,
-    seconds: Annotated[float, typer.Option(min=5.0, help="How long they report.")] = 60.0,
+    units: Annotated[int, typer.Option(min=1, help="Units of each station.")] = 100,
+    seconds: Annotated[float, typer.Option(min=5.0, help="Duration of the reports.")] = 60.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Delay of a department's view, its requests and memory, with stations that report to it."""
+    """Measure the delay of a department's view, its requests and memory, with stations that report
+    to it.
+    """
     report = measure(stations, units, seconds)
     Terminal().print(_table_of(report))
     write_figures(json_file, report)

@@ -1,5 +1,5 @@
-"""``muster bench department-faults``: three whole stations and their department, cut off, killed,
-refused; what is lost, and how soon it is made up for.
+"""``muster bench department-faults``: faults between three stations and their department: losses,
+and the time until they are made up for.
 
 All have certificates and networks of their own; between them are the links of
 ``tests.rig.lossy_link``.  The tables of the department are on a PostgreSQL server.
@@ -195,8 +195,8 @@ def suffer_all(faults: Faults, seconds: float, cut_s: float) -> list[FaultRow]:
 
 
 def bench_department_faults(
-    seconds: Annotated[float, typer.Option(min=1.0, help="How long each fault lasts.")] = 10.0,
-    cut_s: Annotated[float, typer.Option(min=1.0, help="How long one is cut off.")] = 600.0,
+    seconds: Annotated[float, typer.Option(min=1.0, help="Duration of each fault.")] = 10.0,
+    cut_s: Annotated[float, typer.Option(min=1.0, help="Duration of the long cut.")] = 600.0,
     json_file: FiguresFile = None,
 ) -> None:
     """Measure the loss, repeats and delay of faults between three stations and their department.

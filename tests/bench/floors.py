@@ -1,4 +1,4 @@
-"""``muster bench floors``: how often the floor shown is right where no plan is loaded.
+"""``muster bench floors``: share of correct floors where no plan is loaded.
 
 The incidents are those of ``muster bench fusion``, six people each, through the whole pipeline of a
 station, so that what one learns of the building helps the others.  Nobody says how high a storey
@@ -52,11 +52,13 @@ class FloorsReport:
 
 
 def bench_floors(
-    incidents: Annotated[int, typer.Option(min=1, help="Simulated, of six people each.")] = 10,
-    seed: Annotated[int, typer.Option(help="Of the first one.")] = 1,
+    incidents: Annotated[
+        int, typer.Option(min=1, help="Simulated incidents, of six people each.")
+    ] = 10,
+    seed: Annotated[int, typer.Option(help="Seed of the first incident.")] = 1,
     json_file: FiguresFile = None,
 ) -> None:
-    """How often the floor shown is right, without a plan and with one."""
+    """Measure the share of correct floors, without a plan and with one."""
     report = measure(incidents, seed)
     table = Table(title=f"{incidents} incidents: the floor shown, inside and not on stairs")
     for heading in ("storeys", "right", "as stated", "shown", "to reach"):

@@ -1,4 +1,4 @@
-"""``muster bench restart``: how soon a station that ended shows its console again."""
+"""``muster bench restart``: time until a restarted station shows its console."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ class RestartReport:
 
 def bench_restart(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
-    minutes: Annotated[float, typer.Option(min=0.1, help="That they have walked.")] = 60.0,
+    minutes: Annotated[float, typer.Option(min=0.1, help="Duration of their walks.")] = 60.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Starts a station on the log of an hour: after an orderly stop, after a kill that left the
-    log torn, and without any saved state.
+    """Measure the start of a station on the log of an hour: after an orderly stop, after a kill
+    that left the log torn, and without any saved state.
     """
     with Progress(transient=True) as progress:
         report = measure(units, minutes, progress)

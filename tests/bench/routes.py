@@ -47,10 +47,12 @@ class RouteReport:
 
 def bench_routes(
     people: Annotated[int, typer.Option(min=2, help="People with units.")] = 200,
-    minutes: Annotated[int, typer.Option(min=1, help="How long they have walked.")] = 60,
+    minutes: Annotated[int, typer.Option(min=1, help="Duration of their walks.")] = 60,
     json_file: FiguresFile = None,
 ) -> None:
-    """Time of a request for the routes to a member who is down, with a plan and without one."""
+    """Measure the time of a request for the routes to a member who is down, with a plan and
+    without.
+    """
     picture, trails = walked_picture(people, minutes)
     unplanned = msgspec.structs.replace(picture, plan=None)
     reports = [measure(one, trails, minutes) for one in (picture, unplanned)]

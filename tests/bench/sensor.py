@@ -1,5 +1,5 @@
-"""``muster bench sensor``: what a unit's agent costs with emulated sensors of the kernel, and how
-soon a temperature is on the console.
+"""``muster bench sensor``: cost of a unit's agent with emulated sensors of the kernel, and the
+delay of a temperature on the console.
 """
 
 from __future__ import annotations
@@ -57,11 +57,13 @@ class SensorFigures:
 
 
 def bench_sensor(
-    seconds: Annotated[float, typer.Option(min=5.0, help="Measured, of each.")] = 60.0,
-    steps: Annotated[int, typer.Option(min=1, help="Of a temperature.")] = 40,
+    seconds: Annotated[float, typer.Option(min=5.0, help="Duration of each measurement.")] = 60.0,
+    steps: Annotated[int, typer.Option(min=1, help="Steps of the temperature.")] = 40,
     json_file: FiguresFile = None,
 ) -> None:
-    """Measure the CPU of an agent whose sensor is emulated, and count what it takes."""
+    """Measure the processor time of an agent with emulated sensors, and the delay of a
+    temperature on the console.
+    """
     if not has_umockdev():
         raise ConfigError("no umockdev on this machine: install the package umockdev")
     compile_trackers()

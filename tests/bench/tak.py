@@ -1,4 +1,4 @@
-"""``muster bench tak``: how soon people are in TAK, over a real station and TAK server."""
+"""``muster bench tak``: delay of positions in TAK, over a real station and TAK server."""
 
 from __future__ import annotations
 
@@ -45,11 +45,13 @@ class TakReport:
 
 def bench_tak(
     people: Annotated[int, typer.Option(min=1, help="People with units.")] = 500,
-    rate: Annotated[float, typer.Option(min=0.1, help="Positions a second of each.")] = 1.0,
-    seconds: Annotated[float, typer.Option(min=2.0, help="How long they walk.")] = 30.0,
+    rate: Annotated[float, typer.Option(min=0.1, help="Positions a second of each unit.")] = 1.0,
+    seconds: Annotated[float, typer.Option(min=2.0, help="Duration of the walks.")] = 30.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Latency from a position to a TAK client, over a station and a TAK server (taky)."""
+    """Measure the latency from a position to a TAK client, over a station and a TAK server
+    (taky).
+    """
     report = measure(people, rate, seconds)
     Terminal().print(_table_of(report))
     write_figures(json_file, report)

@@ -1,5 +1,5 @@
-"""``muster bench wearer``: from a button to the screen, from an order to the wearer, and from a
-decision of the unit to its output.
+"""``muster bench wearer``: delays from a button to the screen, from an order to the wearer, and
+from a decision of the unit to its output.
 
 A station and an agent as processes on this machine; the button is another program's, over a local
 socket, and the output a line.
@@ -54,11 +54,15 @@ class WearerFigures:
 
 
 def bench_wearer(
-    trials: Annotated[int, typer.Option(min=1, help="Maydays, orders, pre-alerts.")] = 40,
+    trials: Annotated[
+        int, typer.Option(min=1, help="Number of maydays, orders and pre-alerts.")
+    ] = 40,
     outage: Annotated[bool, typer.Option(help="Also a mayday while the radio is away.")] = True,
     json_file: FiguresFile = None,
 ) -> None:
-    """Holds a button and sends orders, again and again; once while the radio is away."""
+    """Measure the delays of a button on the screen, of an order at the wearer and of a pre-alert at
+    its output; once without the radio.
+    """
     compile_trackers()
     with TemporaryDirectory(prefix="muster-bench-") as folder:
         pre_alert_s = measure_pre_alerts(trials, Path(folder))

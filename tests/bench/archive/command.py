@@ -46,14 +46,16 @@ class ArchiveFigures:
 
 
 def bench_archive(
-    incidents: Annotated[int, typer.Option(min=1, help="To search.")] = 10_000,
-    units: Annotated[int, typer.Option(min=1, help="In the archived incident.")] = 50,
-    minutes: Annotated[float, typer.Option(min=1.0, help="Of it.")] = 15.0,
-    pictures: Annotated[int, typer.Option(min=1, help="Seconds of it that are shown.")] = 10,
+    incidents: Annotated[int, typer.Option(min=1, help="Incidents to search.")] = 10_000,
+    units: Annotated[int, typer.Option(min=1, help="Units of the archived incident.")] = 50,
+    minutes: Annotated[
+        float, typer.Option(min=1.0, help="Duration of the archived incident.")
+    ] = 15.0,
+    pictures: Annotated[int, typer.Option(min=1, help="Pictures that are shown.")] = 10,
     json_file: FiguresFile = None,
 ) -> None:
-    """Fills a database with incidents and searches them; then shows single seconds of an incident
-    in a bucket, over a link of 20 ms each way and 50 Mbit/s, each as if for the first time.
+    """Measure the search of many archived incidents, and the time to the first picture of one in a
+    bucket behind a link of 20 ms each way and 50 Mbit/s.
     """
     with TemporaryDirectory(prefix="muster-bench-") as name, ExitStack() as cleaning:
         folder = Path(name)

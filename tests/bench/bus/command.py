@@ -1,4 +1,4 @@
-"""``muster bench bus``: what a station takes in, and how soon a console shows it."""
+"""``muster bench bus``: throughput of a station, and delay until a console shows a message."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def bench_bus(
     rate: Annotated[
         float, typer.Option(min=0.1, help="Messages a second of each unit, positions mostly.")
     ] = 10.0,
-    seconds: Annotated[float, typer.Option(min=1.0, help="How long they speak.")] = 30.0,
+    seconds: Annotated[float, typer.Option(min=1.0, help="Duration of the load.")] = 30.0,
     consoles: Annotated[int, typer.Option(min=1, help="Consoles that watch.")] = 3,
     onlookers: Annotated[
         int, typer.Option(min=0, help="Further consoles that only count what they get.")
@@ -52,8 +52,8 @@ def bench_bus(
     plain: PlainTcp = False,
     json_file: FiguresFile = None,
 ) -> None:
-    """Messages a second and latency from sensor to WebSocket through a real station, beside a
-    bare Zenoh publisher and subscriber in the same run.
+    """Measure messages a second and latency from sensor to WebSocket through a real station, beside
+    a bare Zenoh publisher and subscriber in the same run.
     """
     load = Load(units, rate, seconds, consoles, onlookers, slow)
     with Progress(transient=True) as progress:

@@ -1,4 +1,4 @@
-"""``muster bench console``: the wire of a console and what a browser shows, at a real station."""
+"""``muster bench console``: bit rate and delay of consoles and browsers at a real station."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class ConsoleReport:
 def bench_console(
     units: Annotated[int, typer.Option(min=1, help="Simulated units.")] = 200,
     consoles: Annotated[int, typer.Option(min=1, help="Consoles at once.")] = 50,
-    seconds: Annotated[float, typer.Option(min=5.0, help="Of each measurement.")] = 30.0,
+    seconds: Annotated[float, typer.Option(min=5.0, help="Duration of each measurement.")] = 30.0,
     slowed: Annotated[
         list[float] | None,
         typer.Option(
@@ -73,7 +73,7 @@ def bench_console(
     plain: PlainTcp = False,
     json_file: FiguresFile = None,
 ) -> None:
-    """Bits a second of a console, the cost of many, and how old is what a slow browser shows.
+    """Measure the bit rate of a console, the cost of many, and the delay of a slow browser.
 
     Units, station, consoles and browser share this machine.
     """

@@ -1,4 +1,4 @@
-"""``muster bench faults``: a station and a unit that are troubled, and what of it is lost.
+"""``muster bench faults``: losses of a station and a unit under faults.
 
 Both run as they would in earnest, with certificates, in network namespaces of their own; between
 them is the link of ``tests.rig.lossy_link``.
@@ -52,17 +52,17 @@ class FaultReport:
 
 def bench_faults(
     longest: Annotated[
-        float, typer.Option(min=1.0, help="Leave out faults of more than so many seconds.")
+        float, typer.Option(min=1.0, help="Longest fault; longer ones are skipped.")
     ] = 60.0,
     only: Annotated[str, typer.Option(help="Only faults with these words in their name.")] = "",
     patience: Annotated[
-        float, typer.Option(help="How long to wait, after a fault, for the rest to arrive.")
+        float, typer.Option(help="Longest wait after a fault for late messages.")
     ] = 180.0,
-    times: Annotated[int, typer.Option(min=1, help="Each one so often: luck differs.")] = 1,
-    seed: Annotated[int, typer.Option(help="Of the link's luck.")] = 1,
+    times: Annotated[int, typer.Option(min=1, help="Repeats of each fault.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the link's losses.")] = 1,
     json_file: FiguresFile = None,
 ) -> None:
-    """What bad links, kills, clones, clocks and full disks lose, double and delay.
+    """Measure losses, repeats and delays by bad links, kills, clones, clocks and full disks.
 
     Needs to be root, on Linux.  With `--longest 600` the outage of ten minutes is among them.
     """

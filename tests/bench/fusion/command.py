@@ -1,4 +1,4 @@
-"""``muster bench fusion``: how well the station knows where people are, beside simpler ways.
+"""``muster bench fusion``: accuracy of the station's positions, beside simpler methods.
 
 Simulated incidents, each with a seed of its own: a building, six people, twenty minutes
 (``tests.rig.incident``).  All begin at the engine, whose place the commander has said and
@@ -75,10 +75,12 @@ class FusionReport:
 
 
 def bench_fusion(
-    incidents: Annotated[int, typer.Option(min=1, help="Simulated, of six people each.")] = 10,
-    seed: Annotated[int, typer.Option(help="Of the first one.")] = 1,
+    incidents: Annotated[
+        int, typer.Option(min=1, help="Simulated incidents, of six people each.")
+    ] = 10,
+    seed: Annotated[int, typer.Option(help="Seed of the first incident.")] = 1,
     tracked: Annotated[
-        bool, typer.Option("--tracked", help="Their units track simulated sensors.")
+        bool, typer.Option("--tracked", help="Units track simulated sensors.")
     ] = False,
     walks: Annotated[
         Path | None, typer.Option(help="Recorded trials with truth, instead; needs --tracks.")
@@ -88,8 +90,8 @@ def bench_fusion(
     ] = None,
     json_file: FiguresFile = None,
 ) -> None:
-    """Error and honesty of the fused position over simulated incidents, beside satellite fixes
-    alone, the unit's own path alone, and switching between them.
+    """Measure error and honesty of the fused position over simulated incidents, beside satellite
+    fixes alone, the unit's own path alone, and switching between them.
     """
     if (walks is None) != (tracks is None):
         raise UserError("recorded walks need both: --walks with the trials, --tracks with tracks")

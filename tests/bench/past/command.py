@@ -1,4 +1,4 @@
-"""``muster bench past``: what looking back on an incident takes beside a station."""
+"""``muster bench past``: cost of post-processing an incident beside a station."""
 
 from __future__ import annotations
 
@@ -59,14 +59,15 @@ class LookBackFigures:
 
 def bench_past(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
-    minutes: Annotated[float, typer.Option(min=0.1, help="That they walk.")] = 60.0,
+    minutes: Annotated[float, typer.Option(min=0.1, help="Duration of the walks.")] = 60.0,
     live_units: Annotated[int, typer.Option(min=1, help="Wearers at the live station.")] = 20,
-    alone_s: Annotated[float, typer.Option(min=0.5, help="Without it, before and after.")] = 20.0,
+    alone_s: Annotated[
+        float, typer.Option(min=0.5, help="Duration without the work, before and after it.")
+    ] = 20.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Lets people walk corridors and stairs of a building, closes the incident, and works out what
-    is known of it afterwards, in a process of its own as a station does; how old are positions at
-    a station that is live meanwhile?
+    """Measure time and memory of the post-processing of a simulated incident, and its effect on the
+    delay of positions at a live station beside it.
     """
     with TemporaryDirectory(prefix="muster-bench-") as name, Progress(transient=True) as progress:
         folder = DataFolder(Path(name))

@@ -39,12 +39,11 @@ class ExportFigures:
 
 def bench_exports(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
-    minutes: Annotated[float, typer.Option(min=0.1, help="That they walk.")] = 60.0,
+    minutes: Annotated[float, typer.Option(min=0.1, help="Duration of the walks.")] = 60.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Lets people walk corridors and stairs of a building, and exports that by the command, whose
-    memory and time are measured: as it was shown, and as it is known afterwards, which is made
-    before and not measured.
+    """Measure memory and time of exports of a simulated incident: as it was shown, and
+    post-processed (made before, and not measured).
     """
     with TemporaryDirectory(prefix="muster-bench-") as name, Progress(transient=True) as progress:
         folder = DataFolder(Path(name) / "station")

@@ -107,13 +107,13 @@ class ReplayFigures:
 
 def bench_replay(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
-    minutes: Annotated[float, typer.Option(min=1.0, help="That they walk.")] = 60.0,
+    minutes: Annotated[float, typer.Option(min=1.0, help="Duration of the walks.")] = 60.0,
     live_units: Annotated[int, typer.Option(min=1, help="Wearers at the live station.")] = 20,
-    live_s: Annotated[float, typer.Option(min=0.5, help="Beside eight replays.")] = 20.0,
+    live_s: Annotated[float, typer.Option(min=0.5, help="Duration beside eight replays.")] = 20.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """Lets people walk corridors and stairs of a building, and replays that: as it was shown, in a
-    process of its own as a station does, and by deciding everything again.
+    """Measure first picture, seeks, speed and memory of replays of a simulated incident: as it was
+    shown, in a process of its own, and by deciding everything again.
     """
     with TemporaryDirectory(prefix="muster-bench-") as name, Progress(transient=True) as progress:
         folder = DataFolder(Path(name))

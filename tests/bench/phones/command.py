@@ -46,11 +46,11 @@ class PhoneFigures:
 
 def bench_phones(
     data: Annotated[Path, typer.Argument(help="The folder with phones/FLOOR/TRIAL.")],
-    tracker: Annotated[str, typer.Option(help="That of the units.")] = "body",
+    tracker: Annotated[str, typer.Option(help="Tracker of the units.")] = "body",
     json_file: FiguresFile = None,
 ) -> None:
     """Measure the error of telephones in the hand at surveyed waypoints, without and with the plan
-    of the floor, live and as known afterwards.
+    of the floor, live and smoothed.
     """
     figures = measure(data, tracker)
     Console().print(_table(figures))

@@ -1,4 +1,4 @@
-"""``muster bench standby``: how soon the other of two stations leads, and what its log lacks."""
+"""``muster bench standby``: time until the standby leads, and records that its log lacks."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ class StandbyReport:
 
 
 def bench_standby(
-    units: Annotated[int, typer.Option(min=2, max=20, help="How many are there.")] = 4,
+    units: Annotated[int, typer.Option(min=2, max=20, help="Simulated units.")] = 4,
     minutes: Annotated[
-        float, typer.Option(min=0.0, help="Of log that a new standby finds; 0: leave that out.")
+        float, typer.Option(min=0.0, help="Length of the log that a new standby fetches; 0: skip.")
     ] = 60.0,
     walkers: Annotated[int, typer.Option(min=1, help="Units in that log.")] = 20,
     json_file: FiguresFile = None,
 ) -> None:
-    """Kill, stop and cut off the station that leads, which last needs to be root, on Linux; and put
+    """Measure take-overs after a kill, a stop and a cut link (as root, on Linux), and the start of
     a new standby beside a long log.
     """
     terminal = Terminal()

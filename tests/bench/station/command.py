@@ -1,5 +1,5 @@
-"""``muster bench station``: messages a second that one core takes through a station, and whether
-its memory stays as it is.
+"""``muster bench station``: messages a second of one core through a station, and growth of its
+memory.
 """
 
 from __future__ import annotations
@@ -35,13 +35,14 @@ def bench_station(
             show_default="7, and then what is to be reached by all together",
         ),
     ] = None,
-    minutes: Annotated[float, typer.Option(min=0.05, help="Of the station's time.")] = 0.5,
+    minutes: Annotated[float, typer.Option(min=0.05, help="Duration in the station's time.")] = 0.5,
     consoles: Annotated[int, typer.Option(min=0, help="Consoles that watch.")] = 3,
     json_file: FiguresFile = None,
 ) -> None:
-    """What a message costs a station: log, pipeline, database and consoles, without the network,
-    at full speed; beside it what the log alone and a bare subscriber take.  With --minutes 30 it
-    tells whether memory grows.
+    """Measure the cost of a message at a station at full speed: log, pipeline, database and
+    consoles, without the network; beside it the log alone and a bare subscriber.
+
+    With --minutes 30 it shows whether memory grows.
     """
     # Loads the core.
     from tests.bench.station.load import measure, measure_yardsticks  # noqa: PLC0415

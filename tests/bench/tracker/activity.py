@@ -1,4 +1,4 @@
-"""``muster bench activity``: how well the unit knows what its wearer does."""
+"""``muster bench activity``: recognition of the wearer's activity by the unit."""
 
 from __future__ import annotations
 
@@ -42,10 +42,12 @@ def bench_activity(
         typer.Argument(help="A folder of trials, such as shared/data/walks; without: simulated."),
     ] = None,
     json_file: FiguresFile = None,
-    first_seed: Annotated[int, typer.Option(min=0, help="Of the simulated wearers.")] = 10,
-    seeds: Annotated[int, typer.Option(min=1, max=1000, help="How many wearers.")] = 5,
+    first_seed: Annotated[
+        int, typer.Option(min=0, help="First seed of the simulated wearers.")
+    ] = 10,
+    seeds: Annotated[int, typer.Option(min=1, max=1000, help="Number of wearers.")] = 5,
 ) -> None:
-    """Print what wearers did against what their units said, simulated and recorded.
+    """Measure the activities that units report, on simulated and recorded wearers.
 
     The thresholds were set on the seeds 0 to 2, which are not among the default ones.
     """

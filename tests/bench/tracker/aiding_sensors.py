@@ -1,4 +1,4 @@
-"""``muster bench aids``: what magnetometer, barometer and calibration are worth.
+"""``muster bench aids``: effect of magnetometer, barometer and calibration.
 
 The same walks with and without each.  Only what is simulated has a truth for it: no recording
 at hand has a barometer, and those with a magnetometer last a minute.
@@ -74,7 +74,9 @@ def bench_aids(
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
 ) -> None:
-    """Track simulated walks with and without magnetometer, barometer and calibration."""
+    """Measure the errors of simulated walks with and without magnetometer, barometer and
+    calibration.
+    """
     console = Console(width=max(Console().width, 130))
     jobs = list(_jobs(tracker))
     bar = progress_bar(jobs, description="Walking", console=Console(stderr=True), transient=True)

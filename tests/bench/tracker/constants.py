@@ -1,4 +1,4 @@
-"""``muster bench constants``: which constants of the foot's tracker ever decide anything?
+"""``muster bench constants``: constants of the foot's tracker, and those without effect.
 
 Each constant of ``EskfConfig`` is halved and doubled by itself, over recordings, simulated walks
 and walks of worse sensors.  A constant that changes no row of any of them, to the last bit, has
@@ -78,7 +78,7 @@ def bench_constants(
         str, typer.Option(help="Only constants whose name begins so, such as 'floor.'.")
     ] = "",
 ) -> None:
-    """Halve and double every constant of the foot's tracker; show what that changes."""
+    """Measure the effect of every constant of the foot's tracker: each is halved and doubled."""
     console = Console(width=max(Console().width, WIDTH))
     walks = all_walks(data)
     decisions = measure_constants(walks, [name for name in constants() if name.startswith(only)])

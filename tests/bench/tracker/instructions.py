@@ -1,4 +1,4 @@
-"""``muster bench instructions``: what a sample costs the processor, whatever else it does.
+"""``muster bench instructions``: instructions of a sample, independent of the machine's load.
 
 Times on a shared machine say little; the number of instructions is the same to a hundredth of
 a per cent wherever it is counted.  Valgrind's callgrind counts those of one fixed simulated
@@ -45,7 +45,7 @@ def bench_instructions(
         str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
     ] = TRACKERS[0].name,
 ) -> None:
-    """Count the instructions a sample takes (with valgrind; skipped where it is missing)."""
+    """Measure the instructions that a sample takes (with valgrind; skipped where it is missing)."""
     try:
         count = count_instructions(tracker)
     except CannotCountError as error:

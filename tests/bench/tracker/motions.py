@@ -1,4 +1,4 @@
-"""``muster bench motions``: how a motion fares with constants that were tuned without it.
+"""``muster bench motions``: error of each kind of motion with constants tuned without it.
 
 One kind of motion is taken out of all walks, recorded and simulated.  The constants in ``TUNED``
 are
@@ -105,7 +105,7 @@ def bench_motions(
     ],
     json_file: FiguresFile = None,
 ) -> None:
-    """Tune the foot's tracker without one kind of motion, and score that kind, each in turn."""
+    """Measure the error of each kind of motion with constants that were tuned without it."""
     walks: dict[str, list[Walk]] = {}
     for walk in (*recorded_walks(data), *hard_walks()):
         walks.setdefault(motion_of(walk), []).append(walk)

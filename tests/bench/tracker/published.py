@@ -1,4 +1,4 @@
-"""``muster bench published``: what units would publish on simulated walks, and the truth beside it.
+"""``muster bench published``: positions that units would publish on simulated walks, and the truth.
 
 ``muster bench fusion --tracked`` has its people walk by it: base station and edge meet only in
 what is published.
@@ -30,14 +30,14 @@ def bench_published(
     out: Annotated[
         Path, typer.Option(help="A folder: for each scenario a CSV of its name is written there.")
     ],
-    seed: Annotated[int, typer.Option(help="Of the first one.")] = 0,
-    rate_hz: Annotated[float, typer.Option(min=0.1, max=50.0, help="Of positions.")] = 2.0,
+    seed: Annotated[int, typer.Option(help="Seed of the first scenario.")] = 0,
+    rate_hz: Annotated[float, typer.Option(min=0.1, max=50.0, help="Rate of positions.")] = 2.0,
     *,
     uncalibrated: Annotated[
         bool, typer.Option("--uncalibrated", help="Sensors as a data sheet has them.")
     ] = False,
 ) -> None:
-    """Walk scenarios at once; write what a unit would publish, and where it truly was."""
+    """Write the positions that units would publish on simulated walks, and the true ones."""
     if not out.is_dir():
         raise UserError(f"{out} is no folder; make it, or give another one")
     sensors = UNCALIBRATED_SENSORS if uncalibrated else CONSUMER_SENSORS

@@ -1,4 +1,4 @@
-"""``muster bench track``: score the tracker on recorded walks, and time it."""
+"""``muster bench track``: errors and speed of the tracker on recorded walks."""
 
 from __future__ import annotations
 
@@ -143,7 +143,9 @@ def bench_track(
     elsewhere: ElsewhereOption = None,
     simulated_elsewhere: SimulatedElsewhereOption = False,
 ) -> None:
-    """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
+    """Measure the errors of every trial below DATA: closure, ATE, ARMSE, heights, honesty of the
+    uncertainty.
+    """
     console = Console(width=max(Console().width, WIDTH))
     sets = {folder: find_trials(folder) for folder in data}
     first = next(iter(sets.values()))
