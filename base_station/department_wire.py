@@ -107,7 +107,7 @@ class PersonEvent(msgspec.Struct, frozen=True, tag="person"):
     """Name of a person id, from then on."""
 
     person_id: str
-    name: str  # empty: the person was forgotten, and is to be forgotten here
+    name: str  # empty: the person was erased, and is to be erased here
     crew: str
     role: str
 

@@ -26,7 +26,7 @@ class Passwords:
     def __init__(self, hasher: PasswordHash | None = None) -> None:
         self._hasher = hasher or PasswordHash.recommended()
         self._worker = ThreadPoolExecutor(_AT_ONCE, "passwords", initializer=_give_way)
-        # Checked for names that do not exist, so that the answer takes as long; a start goes on.
+        # Checked for unknown names, so that the answer takes as long.
         self._unknown_user_hash = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:

@@ -47,5 +47,5 @@ class Principal(msgspec.Struct, frozen=True):
     role: Role
     scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
     token_ends_ns: int | None = None  # None: it does not end, or this is a login
-    unit_id: str = ""  # whose samples alone it may post; empty: it is no unit's token
+    unit_id: str = ""  # unit that the token may post samples for; empty: not a unit's token
     must_change_password: bool = False  # it was generated; until then nothing else may be done

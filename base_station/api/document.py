@@ -38,7 +38,7 @@ def complete_document(app: FastAPI) -> None:
         assert app.openapi_schema is not None
         return app.openapi_schema
 
-    app.openapi = document  # type: ignore[method-assign]  # as the framework's own manual has it
+    app.openapi = document  # type: ignore[method-assign]  # as FastAPI's manual shows
 
 
 def _complete(document: dict[str, Any]) -> None:
@@ -58,7 +58,7 @@ def _complete(document: dict[str, Any]) -> None:
         operation["responses"] |= _problem_responses()
         for media_type, body in operation.get("requestBody", {}).get("content", {}).items():
             if media_type != "application/json":
-                body["schema"] = _FILE  # a client would take FastAPI's own words for text
+                body["schema"] = _FILE  # a client would take FastAPI's own messages for texts
         for parameter in operation.get("parameters", ()):
             _add_description(parameter, describe_parameter(parameter["name"]))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 FIELDS: Mapping[str, str] = {
-    # ---- who and what
+    # ---- people and incidents
     "unit_id": "The wearable unit's id, as it is enrolled.",
     "unit_ids": "Ids of the wearable units.",
     "UnitTarget.unit_id": "The one unit that is meant.",

@@ -113,7 +113,7 @@ class PacedClient(Client):
 
     def request_snapshot(self) -> None:
         super().request_snapshot()
-        self._unshown.clear()  # whatever became of them, it takes a snapshot now
+        self._unshown.clear()  # in any case it takes a snapshot now
 
     def enqueue_snapshot(
         self, message: bytes, trails: Mapping[str, bytes], *, requested_only: bool

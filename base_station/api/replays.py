@@ -78,7 +78,7 @@ class Replays:
         """Start a replay; one that is given its hub lasts until it is closed."""
         self._require_room()
         hub = persistent or Hub()
-        player = self._start(incident, speed, hub)  # may wait for an archive, and nobody for it
+        player = self._start(incident, speed, hub)  # may wait for an archive; requests do not
         opened = OpenReplay(
             secrets.token_hex(8),
             hub,

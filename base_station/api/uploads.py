@@ -23,7 +23,7 @@ from base_station.api.forms import MAX_UPLOAD_BYTES
 from base_station.api.problems import Problem
 from base_station.api.services import services_of
 
-_MAX_TURNS = 4  # whose bodies of 12 MB are in memory
+_MAX_TURNS = 4  # uploads whose bodies of 12 MB are in memory
 _MAX_TURNS_PER_ACCOUNT = 2  # one is read while another is decoded
 TURN_S = 15.0  # 12 MB over a radio link of 6.4 Mbit/s
 

@@ -28,7 +28,7 @@ from shared.own_files import give_to_owner, make_folder, read_own, refuse_links,
 
 _PRIVATE = 0o700
 _PART = ".part"  # of the name, until the copy is whole
-_BLOCK_BYTES = 4096  # a disk gives so much or none of it
+_BLOCK_BYTES = 4096  # a disk reads so many bytes or none
 _MTIME_STEP_NS = 2_000_000_000  # some file systems of USB sticks know only every other second
 
 
@@ -208,7 +208,7 @@ def _copy_file(path: Path, copy: Path) -> bool:
 
 
 def _files(source: DataFolder) -> Iterator[Path]:
-    # Pending erasures go first: one that is done meanwhile is done in the copy, too.
+    # Pending erasures go first: an erasure done meanwhile is done in the copy, too.
     yield from filter(Path.exists, (source.forgettings, source.begun))
     yield from segment_paths(source.log)
     yield from ImportFolder(source.imports).files()

@@ -174,7 +174,7 @@ class _Subject:
 
     kind: str
     subject_id: str
-    description: str  # in words
+    description: str  # as a sentence
     worn: Sequence[str] = ()  # units that the person wears
 
 

@@ -50,7 +50,7 @@ _RESTORE = (
     "Messages of units are fetched again from their journals; for the rest, restore the file from "
     "a backup"
 )
-REPAIR_RETENTION = 12  # attempts to forget: two minutes for a job of some seconds
+REPAIR_RETENTION = 12  # attempts of an erasure: two minutes for a job of some seconds
 _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is reachable"
 
 
@@ -100,7 +100,7 @@ class StationStorage:
     def known_segments(self) -> Collection[KnownSegment]:
         try:
             return known_segments_of(self.records)
-        except StoreError:  # a disk that hangs keeps no replay; the files tell of most
+        except StoreError:  # a hanging disk stops no replay; most is found in the files
             return ()
 
     def note_taken_back(self, what: str) -> None:
@@ -144,9 +144,9 @@ class StationStorage:
         def obstacle(job: ErasureJob) -> str:
             if not job.from_peer and not leads():
                 return "this station is the standby; ask the one that leads"
-            if self.projection.is_behind:  # what is read of the log may be of the person
+            if self.projection.is_behind:  # records read from the log may be of the person
                 return "the database is brought up to date from the log; it is done after that"
-            # One may have opened since it was wished; of what it follows, the other one has asked.
+            # One may have opened since the request; a follower's leader has checked its own.
             is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
             return "an incident is open; it is done when that is closed" if is_open else ""
 

@@ -42,7 +42,7 @@ from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
 from shared.messages.station import Action
 
-_RECENT_NS = 3600 * NS_PER_S  # of trails; alarms raised so long before an incident are of it
+_RECENT_NS = 3600 * NS_PER_S  # of trails; alarms raised so long before an incident belong to it
 _TRAIL_EVERY_S = 5
 _PUBLISH_EVERY_NS = 2 * NS_PER_S
 _log = logging.getLogger(__name__)

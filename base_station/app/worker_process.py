@@ -54,7 +54,7 @@ def _run_copy(fd: int) -> NoReturn:
 
 def _prefer_for_oom_kill() -> None:
     """Makes this process the first that the kernel ends where memory runs out."""
-    with suppress(OSError):  # not every system has it
+    with suppress(OSError):  # missing on some systems
         Path("/proc/self/oom_score_adj").write_text(str(_OOM_SCORE), encoding="ascii")
 
 

@@ -26,7 +26,7 @@ _BEGIN = "{person "
 _REFERENCE = re.compile(r"\{person ([A-Za-z0-9_.:-]+)\}")
 _NUMBER = re.compile(r"(\{person [^}]*\})|\d+")
 
-# The words of operators, by the kind of action and its field.
+# Free texts of operators, by the kind of action and its field.
 FREE_TEXTS: Mapping[type[Action], str] = {
     OpenIncident: "name",
     RegisterUnit: "label",

@@ -198,7 +198,7 @@ class StationPipeline:
                 outputs.append(effect)
             else:
                 outputs.append(UnitChanged(effect.unit_id))
-        if isinstance(message.action, SetAnchor | SetPlan | SetFuser):  # who is silent, too
+        if isinstance(message.action, SetAnchor | SetPlan | SetFuser):  # silent units, too
             shown = [unit for unit in self.state.units.values() if unit.place.fused is not None]
             for unit in shown:
                 outputs.extend(self._positioning.locate(self.state, unit))

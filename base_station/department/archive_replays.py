@@ -20,7 +20,7 @@ from shared.errors import ArchiveError
 _LOGIN = re.compile(r"^login for this replay: (\S+)  password: (\S+)$")
 _START_S = 60.0
 _END_S = 10.0
-_TAIL_LINES = 3  # of what it printed, where it does not start
+_TAIL_LINES = 3  # of its output, where it does not start
 _PROGRAM = "base_station.department.replay_program"
 
 
@@ -36,9 +36,7 @@ class ArchiveReplays:
     def __init__(self, config: DepartmentArchiveConfig, http: HttpConfig) -> None:
         self._config, self._http = config, http
         self._lock = Lock()
-        self._running: dict[
-            tuple[str, str], _Running
-        ] = {}  # the one that was asked for last is last
+        self._running: dict[tuple[str, str], _Running] = {}  # the latest request is last
 
     def open(self, station: str, incident_id: str) -> StartedReplay:
         """One that runs already is given again; beyond the limit the oldest ends.

@@ -31,8 +31,8 @@ class StationPicture:
     summary: Summary
     received_ns: int  # UTC of the department
     received_monotonic_ns: int | None  # None: before this program began
-    counts: Mapping[str, IncidentCounts]  # by incident id; empty: people who are in none
-    people: Sequence[PersonSummary]  # who need help first
+    counts: Mapping[str, IncidentCounts]  # by incident id; empty: people in no incident
+    people: Sequence[PersonSummary]  # people in need of help first
 
     @staticmethod
     def of(

@@ -61,7 +61,7 @@ class ActionQueue:
         for _ in range(len(self._waiting)):
             by, action, action_id, future = self._waiting.popleft()
             if isinstance(action, ForgetWearers) and is_saving():
-                # What is being saved has them in it.
+                # The checkpoint in progress holds the person.
                 self._waiting.append((by, action, action_id, future))
                 continue
             before = ActionResult.before(self._pipeline.state, action_id)

@@ -57,7 +57,7 @@ CHECKPOINT_NS = 15 * NS_PER_S  # that a restart steps at most; at 1,000 events/s
 CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
 REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
 MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
-FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
+FINISH_NS = 2 * NS_PER_S  # at the end, for records that wait in the feed
 STOP_TIMEOUT_S = 10.0
 
 _EXTERNAL_KEY = EXTERNAL.key(STATION_ID)
@@ -207,7 +207,7 @@ class StationEngine:
 
     def _step(self) -> float:
         with self._health.guard("drive"):
-            self._run_once()  # waits in the feed for what comes, or is due next
+            self._run_once()  # waits in the feed for the next record or due time
         return 0.0
 
     def _run_once(self) -> bool:
@@ -248,7 +248,7 @@ class StationEngine:
         while self._snapshot_requests:
             snapshot = (
                 self._publisher.snapshot()
-            )  # where it cannot be made, the caller goes on waiting
+            )  # where it cannot be made, the caller keeps waiting
             self._snapshot_requests.popleft()(*snapshot)
         return bool(records)
 
@@ -259,7 +259,7 @@ class StationEngine:
         if now_ns - last_run_ns > STALLED_NS and not self._receives_first:
             # Else all units would be lost: their messages could not be received meanwhile.
             due.tick_ns = due.sooner_tick_ns = now_ns + RECEIVE_FIRST_NS
-            self._receives_first = True  # once: time goes on, however slow each turn is
+            self._receives_first = True  # once: time advances, however slow each round is
         is_due = now_ns >= due.tick_ns
         if is_due:
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)

@@ -47,7 +47,7 @@ class LiveFeed:
         self._bytes = 0
         self._late: deque[tuple[str, bytes]] = deque()
         self._late_bytes = 0
-        self._late_pending = False  # of what was delivered
+        self._late_pending = False  # of delivered records
         self._all_taken = False  # and the engine has not come again since
         self._woken = False
         self._closed = False
@@ -104,7 +104,7 @@ class LiveFeed:
         with self._changed:
             self._late_pending = self._late_pending and not self._all_taken
             self._changed.wait_for(lambda: self._queue or self._late or self._woken, timeout_s)
-            if self._queue and not self._late:  # what comes in quick succession is taken together
+            if self._queue and not self._late:  # records in quick succession are taken together
                 self._changed.wait_for(lambda: self._woken, min(_GATHER_S, timeout_s))
             self._woken = False
             records, self._queue = self._queue, []

@@ -36,7 +36,7 @@ class FoxgloveTopics:
         self._last_second: dict[str, int] = {}
         self._building: tuple[Plan, Anchor] | None = None  # that is logged now, or was last
         self._placing: Iterator[bytes] = iter(())  # it, on the Earth, step by step
-        self._plan = b""  # as it is logged; empty: not all of it is placed yet
+        self._plan = b""  # as it is logged; empty: not all of it has a place yet
         self._plan_logged_ns = 0
 
     def of(

@@ -38,7 +38,7 @@ class HealthMonitor:
         """Keep a bug in one event's handling from ending the station."""
         try:
             yield
-        except Exception as error:  # noqa: BLE001  # reported, and the station goes on
+        except Exception as error:  # noqa: BLE001  # reported, and the station continues
             self.report_bug(part, error)
 
     def report_bug(self, part: str, error: Exception) -> None:

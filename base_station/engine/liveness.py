@@ -11,7 +11,7 @@ from shared.clock import Clock
 
 _BEFORE, _BEHIND = alive_key("*").split("*")
 # A link that comes and goes does so a few times a second at most.  Nothing can drop tokens before
-# they are here, and each holds up what comes behind it.
+# messages are here, and each delays those behind it.
 CHANGES_HZ = 4.0
 CHANGES_AT_ONCE = 100.0
 _WHY = "appears and vanishes on the bus many times a second"

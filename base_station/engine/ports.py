@@ -168,10 +168,11 @@ class EnginePorts:
     checkpoints: Checkpoints
     people: PersonLookup  # by person id
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
-    # Receives once a second what has come of each linked unit, and if it may not be on the disk.
+    # Called once a second with the received numbers of each linked unit, and whether the disk may
+    # lack them.
     report: Callable[[Report, bool], None]
-    linked: Callable[[], frozenset[str]]  # units whose link is there
-    unlinked: Callable[[], frozenset[str]]  # whose link was there and is gone
+    linked: Callable[[], frozenset[str]]  # units with a link
+    unlinked: Callable[[], frozenset[str]]  # units that have lost their link
     send_orders: Callable[[Sequence[Order]], None]  # those that no unit has answered
     clock: Clock
     boot_id: int

@@ -14,11 +14,11 @@ from shared.clock import NS_PER_S, Clock
 from shared.messages.station import ReportProblem
 
 BURST_S = 1.0  # so much may come at once, after a link was held up
-_REPORT_AFTER_NS = 3 * NS_PER_S  # of being beyond it: one burst is no matter
+_REPORT_AFTER_NS = 3 * NS_PER_S  # of excess: one burst is no problem
 _PAUSE_NS = 2 * NS_PER_S  # without any that is too much: it begins anew
 _OVER_AFTER_NS = 30 * NS_PER_S
 _MOST_SENDERS = 2000  # that are kept apart; on a bus without certificates there may be any number
-_PART = "flood "  # and whose
+_PART = "flood "  # and the sender
 _TEXT = (
     f"{{0}} sends more than any unit does (over {MESSAGES_HZ} messages or {BYTES_PER_S / 1e6:g} MB "
     "a second): what is too much is dropped. Switch it off, or revoke it: muster pki revoke {0}"

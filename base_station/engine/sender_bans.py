@@ -13,7 +13,7 @@ FIRST_S, LONGEST_S = 60.0, 3600.0
 _TIMES = 4  # longer than the time before
 _WELL_AFTER_NS = 3600 * NS_PER_S  # since the last one ended: it begins anew
 _REPORT_FOR_NS = 30 * NS_PER_S  # behind the end of one
-_PART = "shut out "  # and whom
+_PART = "shut out "  # and the unit
 
 
 class _Ban(NamedTuple):

@@ -46,7 +46,7 @@ def _written(pyarrow: ModuleType, parquet: ModuleType, incident: IncidentTracks)
             columns = _columns(pyarrow, tracks, incident.anchor)
             writer.write_table(pyarrow.table(columns, schema=schema))
             yield outlet.take()
-    yield outlet.take()  # what stands at the file's end
+    yield outlet.take()  # the footer of a file
 
 
 class _Outlet(io.RawIOBase):
@@ -58,7 +58,7 @@ class _Outlet(io.RawIOBase):
     def writable(self) -> bool:
         return True
 
-    def write(self, content: Any, /) -> int:  # whatever has a buffer
+    def write(self, content: Any, /) -> int:  # any object with a buffer
         part = bytes(content)
         self._parts.append(part)
         return len(part)

@@ -43,7 +43,7 @@ class TrackSelection:
         return msgspec.structs.replace(track, points=points)
 
     def _require_known(self, incident: IncidentTracks) -> None:
-        if not self.names:  # to know who there is, all tracks are gone through
+        if not self.names:  # all tracks are read once to list the people
             return
         known: set[str] = set()
         people: set[str] = set()

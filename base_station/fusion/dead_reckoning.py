@@ -33,7 +33,7 @@ class DeadReckoning(msgspec.Struct):
     place_var_m2: tuple[float, float, float] = (0.0, 0.0, 0.0)  # north, east, and between them
     own_m: tuple[float, float] = (0.0, 0.0)  # that place in the own frame
     turn_rad: float = 0.0  # heading of the own north
-    turn_known_std_rad: float = math.pi  # as it was known; pi: not
+    turn_known_std_rad: float = math.pi  # at the known place; pi: unknown
     turn_added_var: float = 0.0  # since then, beside the drift
     turn_moving_s: float = 0.0  # walked since then
     drift_radps: float = 0.0  # standard deviation of the drift rate

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-LEAST = 1e-12  # variance: what is known without any doubt hangs on nothing
+LEAST = 1e-12  # variance: a state without uncertainty has no correlation
 
 
 def jeffrey_update(

@@ -49,7 +49,7 @@ class GnssUpdater:
         walked_m = memory.last.distance_m if memory.last else 0.0
         if memory.receiver.is_stuck(self._kind, fix, walked_m):
             return FixVerdict(False, FIX_FAULTS["stuck"], faulty=True)
-        if memory.assumed:  # the first thing known of the incident frame
+        if memory.assumed:  # the first evidence of the incident frame
             memory.assumed = False
             self._horizontal.reset_place()
             self._horizontal.reset_heading()
@@ -67,7 +67,7 @@ class GnssUpdater:
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
             self._height.update_gnss(fix.down_m, std_m)
-        if fix.horizontal_std_m < self._kind.open_sky_m:  # who has such fixes is outside
+        if fix.horizontal_std_m < self._kind.open_sky_m:  # a unit with such fixes is outside
             memory.height_assumed = False
         memory.fix_t_mono_ns = max(fix.t_mono_ns, memory.fix_t_mono_ns or 0)
         memory.landmarks.on_fix(memory.receiver.common_m2(fix))

@@ -31,7 +31,7 @@ class PlaceFix(msgspec.Struct, frozen=True):
     down_m: float
     horizontal_std_m: float
     vertical_std_m: float | None  # None: a fix without height
-    common_m2: float | None = None  # what all receivers err by, each axis, as far as it was learnt
+    common_m2: float | None = None  # learnt common error of all receivers, each axis
     uncorrected_m: tuple[float, float] | None = None  # north and east before that was taken off
 
 
@@ -40,7 +40,7 @@ class BarometricHeight(msgspec.Struct, frozen=True, gc=False):
 
     t_mono_ns: int
     down_m: float
-    referenced: bool  # the weather is taken out of it
+    referenced: bool  # without the weather
 
 
 class CompassHeading(msgspec.Struct, frozen=True):
@@ -71,13 +71,13 @@ class Posterior(msgspec.Struct, frozen=True):
 
     mean: list[float]
     covariance: list[list[float]]
-    down_shift_m: float = 0.0  # what is known of the height beside what was estimated
+    down_shift_m: float = 0.0  # evidence of the height beside the estimate
     down_std_m: float | None = None  # None: nothing
 
 
 class FixVerdict(msgspec.Struct, frozen=True):
     accepted: bool
-    reason: str = ""  # why not, for a person; the same words for the same cause
+    reason: str = ""  # reason for a person; the same text for the same cause
     faulty: bool = False  # it cannot be true: the receiver is wrong, or the site's place is
 
 

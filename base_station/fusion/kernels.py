@@ -32,7 +32,7 @@ Record = NDArray[Any]  # (1,): a record of one of the types below
 STATES = 9
 DRIFT = 8
 
-_LEAST_SCALE2 = 0.05  # of a state whose turn means anything
+_LEAST_SCALE2 = 0.05  # smallest squared scale with a meaningful turn
 
 # Elements of the memory of ``predict_height``.
 LEVEL_M = 0  # walked since it last climbed
@@ -281,7 +281,7 @@ def predict_height(
     grown_m2 = max(0.0, own_std_m * own_std_m - path[REST_VAR_M2])
     ridden_m2 = 0.0
     if moves:
-        ridden_m2 = grown_m2  # what is left of a ride that is over
+        ridden_m2 = grown_m2  # the rest of an ended ride
         path[REST_VAR_M2] = own_std_m * own_std_m
         path[RIDE_VAR_M2] = path[RIDDEN_M] = 0.0
     else:

@@ -25,10 +25,10 @@ class Parameters:
     air_std_m: float = 0.3  # a barometer's noise, gusts included
     air_m_per_sqrt_s: float = 0.02  # its shift's wander where the weather is known
     weather_m_per_sqrt_s: float = 0.2  # and where it is not: 350 Pa an hour
-    slow_s: float = 30.0  # correlation time of what a receiver errs by itself and slowly
+    slow_s: float = 30.0  # correlation time of a receiver's own slow error
     height_slow_part: float = 0.8  # of a satellite height's variance
     height_slow_s: float = 60.0
-    wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it
+    wall_std_m: float = 4.0  # deviation that an outer wall adds to a fix beside it
     wall_reach_m: float = 5.0  # falling off by distance
     inside_std_m: float = 8.0  # and being inside
     correlated_fixes: float = 16.0  # in a row, of about the same error beyond the receiver's own

@@ -23,7 +23,7 @@ from shared.errors import StoreError, UserError
 from shared.geo import Anchor
 from shared.messages.station import ImportFile
 
-AROUND_NS = 3600 * NS_PER_S  # before and behind an incident: who drove there, and back
+AROUND_NS = 3600 * NS_PER_S  # before and behind an incident: the drive there, and back
 FAR_M = 20_000.0
 Act = Callable[[ImportFile], object]  # has the station log it; raises where it does not
 

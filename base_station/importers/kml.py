@@ -28,7 +28,7 @@ def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
                 name = placemark.name or f"placemark {len(tracks) + 1}"
                 tracks.append(ImportedTrack(name, found))
             placemark = _Placemark()
-    left_out += placemark.end_track(points)  # one that the file breaks off in
+    left_out += placemark.end_track(points)  # the last one of a torn file
     if found := points.take():
         tracks.append(ImportedTrack(placemark.name or f"placemark {len(tracks) + 1}", found))
     if left_out:

@@ -103,7 +103,7 @@ class _Trails:
     _points: dict[tuple[str, str], TrackPoints] = field(default_factory=dict)  # by name, unit
     _anchor: Anchor | None = None
     _is_open: bool = False
-    _has_all: bool = True  # who was not moved is in it
+    _has_all: bool = True  # people who were not moved are in it
     _moved: dict[str, bool] = field(default_factory=dict)  # by unit: into it, or out of it
     _worn: dict[str, str] = field(default_factory=dict)  # names by unit
 

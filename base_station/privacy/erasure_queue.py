@@ -53,8 +53,8 @@ class ErasureJob(msgspec.Struct):
     share: float = 0.0  # of the log that was looked through
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
-    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
-    kept: tuple[str, ...] = ()  # what stays, as sentences
+    damaged: tuple[str, ...] = ()  # parts of the log, and their results
+    kept: tuple[str, ...] = ()  # records that stay, as sentences
     began: bool = False  # once before, perhaps by an earlier run of the program
     from_peer: bool = msgspec.field(default=False, name="told")  # the other station has erased it
 
@@ -174,7 +174,7 @@ def erase_now(
     """
     jobs = JobList(kept, ErasureJob)
     began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
-    if kind == "person" and not began:  # what is no id may be a name, and there are none in it
+    if kind == "person" and not began:  # only ids are kept: another text may be a name
         forgetter.require_person(subject_id)
     added = jobs.add(_wish(by, kind, subject_id, from_peer=False))
     (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)

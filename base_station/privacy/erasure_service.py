@@ -61,7 +61,7 @@ from shared.messages import STATION_ID
 from shared.messages.station import Action, ForgetWearers, OpenIncident, RegisterUnit
 
 _log = logging.getLogger(__name__)
-BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
+BY_OTHER_STATION = "the other station"  # requests here the erasures done there
 RADIO_KEPT = (
     "What was recorded of the radio while another incident was open stays until that is forgotten, "
     "too: nobody can tell who of them speaks"
@@ -69,8 +69,8 @@ RADIO_KEPT = (
 _ACTIONS = OPERATOR.key(STATION_ID)
 _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
-Progress = Callable[[float], None]  # hears the fraction done
-RepairFirst = Callable[[Path, str], bool]  # hears what is damaged in a segment of the log
+Progress = Callable[[float], None]  # receives the fraction done
+RepairFirst = Callable[[Path, str], bool]  # receives the damage in a segment of the log
 EraseAudio = Callable[[int, int], int]  # station times, the second left out; gives packets
 Act = Callable[[str, Action], Future[ActionResult] | None]  # None: no station that leads does it
 
@@ -112,8 +112,8 @@ class ErasureProgress:
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
     again: bool = False  # an attempt was made before
-    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
-    kept: tuple[str, ...] = ()  # what stays, as sentences
+    damaged: tuple[str, ...] = ()  # parts of the log, and their results
+    kept: tuple[str, ...] = ()  # records that stay, as sentences
 
     def note_damage(self, part: str, written_anew: bool) -> None:
         gone, stays = "its unreadable part is gone", "it stays, with all people in it"

@@ -55,7 +55,7 @@ def return_free_memory() -> None:
 
 
 def _have_own_blocks(large_bytes: int) -> None:
-    set_memory = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
+    set_memory = getattr(ctypes.CDLL(None), "mallopt", None)  # missing in some C libraries
     if set_memory is not None:
         set_memory(_MMAP_THRESHOLD, large_bytes)
 

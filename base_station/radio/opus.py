@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SAMPLE_HZ = 48_000  # of the time axis of Opus, whatever is coded
+SAMPLE_HZ = 48_000  # of the time axis of Opus, for every codec rate
 NS_PER_SAMPLE_3 = 62_500  # of three samples: the length of one is no whole number
 _SILK_MS = (10, 20, 40, 60)
 _HYBRID_MS = (10, 20)

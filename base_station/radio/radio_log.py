@@ -35,7 +35,7 @@ from shared.mcap_log import (
 )
 
 _SILENT_FRAME_NS = SILENT_FRAME_SAMPLES * NS_PER_SAMPLE_3 // 3
-_PACKET_MAX_NS = NS_PER_S // 8  # one that began before a window reaches into it
+_PACKET_MAX_NS = NS_PER_S // 8  # a packet that began before a window reaches into it
 _KNOWN_SEGMENTS = 4_096
 
 

@@ -36,6 +36,6 @@ class Route(msgspec.Struct, frozen=True):
     """Shortest known way of one unit to another."""
 
     places: tuple[Waypoint, ...]  # its corners, both ends among them
-    distance_m: float  # walked, with what stairs add
+    distance_m: float  # walked distance, with the addition for stairs
     std_m: float  # of its end as seen from its begin, in one direction
     crosses_walls: bool  # a trail on it leads through a wall of the plan

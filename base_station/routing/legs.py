@@ -13,7 +13,7 @@ from base_station.routing.interface import Waypoint
 
 Turn = Literal["ahead", "left", "right", "back"]
 
-AHEAD_RAD = math.radians(35.0)  # a bend of less is no turn to who feels along a wall (ours)
+AHEAD_RAD = math.radians(35.0)  # less is no turn for a hand along a wall (own choice)
 BACK_RAD = math.radians(145.0)
 SHORTEST_M = 1.5  # a shorter leg is the corner between two others, or the place of a wearer at rest
 LANDING_M = 4.0  # a shorter way between two flights is their landing
@@ -58,7 +58,7 @@ def _stretches(places: Sequence[Waypoint]) -> Iterator[_Stretch]:
         if before.floor != place.floor:
             climbed = _climbed(before.floor, place.floor)
             leg.floors += climbed
-            is_plan_climb = climbed != 0 and part.length_m == 0.0  # a trail goes on meanwhile
+            is_plan_climb = climbed != 0 and part.length_m == 0.0  # a trail continues meanwhile
         elif leg.floors == 0 and _is_one(leg, part):
             leg.north_m, leg.east_m = leg.north_m + part.north_m, leg.east_m + part.east_m
         else:

@@ -10,7 +10,7 @@ import numpy as np
 from base_station.routing.interface import Floats, Indices
 from base_station.site.floor_grid import FloorGrid
 
-MOST_NODES = 400_000  # of all floors; in a larger plan only trails tell a way
+MOST_NODES = 400_000  # of all floors; in a larger plan only trails give a way
 UNWALKED = 1.3  # cost of ground that only the plan knows: a door may be locked (ours)
 OPEN_GROUND_M = 100.0  # about a plan: so far out the straight way to it is open (ours)
 STAIRS_SLOPE = 2.0  # way on stairs for each metre of rise: they are about 30 degrees steep

@@ -21,7 +21,7 @@ from shared.messages import Position
 
 LEVEL_WALK_M = 6.0  # walked without climbing: on a storey
 CLIMB_M = 0.5  # net, that is a climb
-GROUND_RANGE_M = 1.2  # a wearer who stays so near the first height has not left the ground
+GROUND_RANGE_M = 1.2  # a wearer within this distance of the first height has not left the ground
 APART_M = 25.0  # buildings
 GROUND_NEAR_M = 60.0  # of a building: that ground gives the height of its ground floor
 GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope

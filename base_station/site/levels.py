@@ -27,7 +27,7 @@ UNEVEN_M = 0.35  # by which one storey of a building differs from the others
 SAME_M = 1.6  # heights nearer than this are one level
 GROUND_M = 1.4  # a level so near to the ground outside is the ground floor
 LEVEL_STD_M = 0.2  # how level a storey is
-EXPECTED_ABOVE, EXPECTED_BELOW = 8, 3  # storeys beyond the last one that was walked on
+EXPECTED_ABOVE, EXPECTED_BELOW = 8, 3  # storeys beyond the last one with landings
 SKIPPED = 0.4  # probability that a storey between two others is not walked on
 REPORTED_SURE = 0.97  # probability that a floor number reported by a person is right
 

@@ -17,7 +17,7 @@ LEAST_POINTS = 2  # of a line
 LEAST_RING_POINTS = 4  # RFC 7946, 3.1.6: the last one is the first
 MOST_M = 100_000.0  # from the origin
 MOST_FLOORS = 1000  # above or below
-LINED = ("outline", "wall", "stairs")  # kinds of whose borders the station takes heed
+LINED = ("outline", "wall", "stairs")  # kinds whose borders the station uses
 DRAWN = (*LINED, "room")
 
 Line = tuple[tuple[float, float], ...]  # (east_m, north_m)

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
 FLOOR_STD_M = 0.5  # of a wearer's height on a storey: steps, crawling, how the plan is measured
-_NOTHING = 12.0  # exp(-12): what is so improbable makes no difference
+_NOTHING = 12.0  # exp(-12): a smaller probability makes no difference
 
 _compiled = partial(njit, cache=True, error_model="numpy")
 _TABLE = float64[:, ::1]

@@ -20,7 +20,7 @@ DIRECTIONS = 8  # into which is looked for room
 SAME_WALL = 6.0  # squares within which two walls are one
 MAX_WALLS = 12  # of a way that are remembered
 
-# Of what a square is, of a climb beside stairs, and of a wall where one was met before.
+# Flags of a square, of a climb beside stairs, and of a wall where one was met before.
 Costs = tuple[float, float, float, float, float]
 
 _COSTS = UniTuple(float64, 5)  # type: ignore[no-untyped-call]

@@ -134,7 +134,7 @@ class BranchMerge:
             if stop.wait(_SETTLE_S):
                 return
         if any(one.exception() for one in results.values()):
-            return  # this station does not lead any more: who does takes it
+            return  # this station does not lead any more: the leader merges it
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
 

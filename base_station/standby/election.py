@@ -15,9 +15,9 @@ from shared.clock import NS_PER_S
 
 Decision = Literal["stay", "follow", "lead", "step back"]
 LACKING_LEASES = 20  # that a standby waits for one of which it has not got everything
-_TOKEN_GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
+_TOKEN_GONE_SHARE = 0.5  # of the lease: with the token gone, heartbeats are not just lost
 _ON_THE_WAY_NS = NS_PER_S // 2  # messages from before a cable was cut have come by then
-_GREETING_LEASES = 5  # that a station waits at most for a heartbeat of one whose router listens
+_GREETING_LEASES = 5  # longest wait of a station for a heartbeat of one whose router listens
 _LACKING_NS = 30 * NS_PER_S  # of the other one's log: more is not the last moments
 _OPENING_NS = NS_PER_S  # that a router takes no connection when it opens again
 _WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's message before a heartbeat

@@ -58,7 +58,7 @@ class LogFollower:
         self._leader: Leader | None = None
         self._same_log: Leader | None = None  # this log is the beginning of its log
         self._delivering = Lock()
-        self.delivered = START  # up to here the feed has it
+        self.delivered = START  # delivered to the feed up to here
         self._closed = False
         self.in_step = False  # it has stepped the leader's events, but for the last moment
         self.problem = ""  # why it cannot follow, as a sentence for a person

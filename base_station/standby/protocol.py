@@ -39,7 +39,7 @@ class PeerHeartbeat(msgspec.Struct, frozen=True):
 class ReplicationAck(msgspec.Struct, frozen=True):
     """A standby has this on its disk."""
 
-    run: int  # of the active station whose log it follows
+    run: int  # of the leading station whose log it follows
     place: LogPosition
 
 

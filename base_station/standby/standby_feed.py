@@ -115,7 +115,7 @@ class StandbyFeed:
         try:
             unit_id, channel = parse_key(key)
         except UnknownChannelError:
-            return  # its unit still has it in its journal
+            return  # its unit still has the message in its journal
         if channel.direction is not Direction.UP or not channel.logged or is_backfilled(key):
             return
         now_ns = self.unit_received_ns = self._clock.monotonic_ns()

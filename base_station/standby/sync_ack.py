@@ -22,7 +22,7 @@ _BEHIND_NS = 2 * NS_PER_S
 _GOODBYE_NS = 2 * NS_PER_S
 _LOOK_S = 0.02
 _MOST_MARKS = 1000
-_STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # without an acknowledgement of it
+_STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # without an acknowledgement
 
 Result = TypeVar("Result")
 

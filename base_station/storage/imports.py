@@ -26,7 +26,7 @@ from shared.own_files import make_folder, read_own, write_own
 
 _PRIVATE = 0o700
 _INCOMING = "incoming"
-# Not by its own ending: what ends in .mcap in a station's folder is taken for a part of its log.
+# Not by its own ending: a .mcap in a station's folder would be taken for a part of its log.
 _ORIGINAL, _CONTENT, _SUMMARY = ".original", ".content", ".summary"
 _SUFFIXES = (_ORIGINAL, _CONTENT, _SUMMARY)
 _ATTACHED = "imports/"
@@ -40,7 +40,7 @@ class ImportedPoint(msgspec.Struct, frozen=True, array_like=True, gc=False):
     t_ns: int  # UTC
     lat_deg: float  # WGS-84
     lon_deg: float
-    height_m: float | None = None  # above the ellipsoid or the sea, as the file has it
+    height_m: float | None = None  # above the ellipsoid or the sea, as in the file
     floor: int | None = None  # of the building, where another station knew it
 
 

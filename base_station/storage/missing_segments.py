@@ -34,7 +34,7 @@ class LogGap:
     name: str  # empty: only its number is known
     from_ns: int
     until_ns: int
-    kept: int = 0  # messages of it
+    kept: int = 0  # its messages
     of: int = 0  # 0: unknown
     is_file_missing: bool = False  # the file itself
     is_newest: bool = False  # the table is some seconds behind, so it may have gone on

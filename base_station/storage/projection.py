@@ -21,7 +21,7 @@ class Projection(msgspec.Struct, frozen=True):
     actions: tuple[OperatorAction, ...] = ()  # that were accepted
     descriptions: tuple[UnitDescription, ...] = ()
     last_messages: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every 5 s or so
-    news: tuple[str, ...] = ()  # closed incidents of whose time more is known
+    news: tuple[str, ...] = ()  # closed incidents with later messages
     opened: tuple[tuple[str, str], ...] = ()  # (incident id, id of its site)
     # (unit id, incident id, station time) of coming to an incident; empty: of leaving it
     memberships: tuple[tuple[str, str, int], ...] = ()

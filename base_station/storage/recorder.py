@@ -333,7 +333,7 @@ class Recorder:
         elif flushes > self._flushes_done:
             self._writer.flush()
             self._note_flushed(flushes)
-        else:  # log time goes on although nothing comes
+        else:  # log time advances without records
             self._writer.advance(self._last_t_ns + now_ns - self._received_ns)
         self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
         if self._writer.is_on_disk:

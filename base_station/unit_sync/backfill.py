@@ -29,7 +29,7 @@ logger = logging.getLogger(__name__)
 
 AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES are asked
 _TIMEOUT_S = 10.0
-_MOST_CAME = 8  # times what was asked for; the rest of a longer answer is not kept
+_MOST_CAME = 8  # times the requested size; the rest of a longer answer is not kept
 _LEAST_KEPT_BYTES = 131_072  # of an answer, however little was asked for
 
 _URGENT = "urgent"  # a question for alerts alone

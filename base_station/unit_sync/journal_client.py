@@ -68,7 +68,7 @@ class _Boot:
         self.held = SequenceSet()  # by the last report
         self._fetched = SequenceSet()  # or gone for ever
         self._evicted = SequenceSet()  # those of these that the journal has no more
-        self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
+        self._without_alert = SequenceSet()  # all alerts among them were fetched
         self._have = SequenceSet()  # held or fetched
         self._known = SequenceSet()  # held, fetched or without an alert
         self.first = 1  # the oldest that the journal has

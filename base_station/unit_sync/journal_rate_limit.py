@@ -21,7 +21,7 @@ ALERTS_AT_ONCE = 500
 URGENT_BYTES_AT_ONCE, URGENT_BYTES_PER_S = 4_000_000, 200_000  # an alert has some hundred
 _REPORTED_AFTER_NS = 3 * NS_PER_S  # of waiting
 _OVER_AFTER_NS = 30 * NS_PER_S
-_PART = "journal share "  # and whose
+_PART = "journal share "  # and the unit
 _TEXT = (
     f"{{0}}'s journal brings more than a unit sends in hours ({MESSAGES_AT_ONCE:,} messages, "
     f"{BYTES_AT_ONCE / 1e6:.0f} MB or {ALERTS_AT_ONCE} alerts): the rest is fetched slowly. If it "

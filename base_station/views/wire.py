@@ -101,8 +101,8 @@ class PositionView(Answer, frozen=True):
 class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
     """Amounts and names in the sentence of an alarm; what is not in it is left out."""
 
-    member: str | None = None  # who it is about, or the unit where it is not worn
-    member_before: str | None = None  # who wore the unit before, where it may be about them
+    member: str | None = None  # its wearer, or the unit where it is not worn
+    member_before: str | None = None  # the former wearer, where it may concern that person
     unit_id: str | None = None
     duration_s: float | None = None
     temperature_degc: float | None = None  # of the air around the equipment
@@ -110,7 +110,7 @@ class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
     battery_fraction: float | None = None
     radius_m: float | None = None  # that holds the member with 95 % probability
     reasons: tuple[str, ...] = ()  # why an estimate is poor, or a fix is not used; codes
-    fault: str | None = None  # in words of the unit, its agent or the station
+    fault: str | None = None  # text of the unit, its agent or the station
     part: str | None = None  # of the station, that fails
     calibrated_s: int | None = None  # UTC seconds
 
@@ -130,8 +130,8 @@ class AlarmView(Answer, frozen=True):
     code: str = ""  # of the sentence; empty: recorded by an earlier version, there is only the text
     parameters: AlarmParametersView = AlarmParametersView()
     reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
-    note: str = ""  # the user's words about it
-    peak: float | None = None  # worst value until changed_ms of what the rule measures
+    note: str = ""  # the user's note
+    peak: float | None = None  # worst measured value of the rule until changed_ms
 
 
 class DutyView(Answer, frozen=True):
@@ -170,7 +170,7 @@ class WornSensorView(Answer, frozen=True):
     name: str  # in the unit; empty: its only one
     place: str  # part of the body, such as left_foot; empty: unknown
     place_recognised: bool  # by its motion; else the place is that of the unit's settings
-    mount: str  # how it is fastened, in words
+    mount: str  # way of fastening, in words
     model: str
 
 
@@ -196,11 +196,11 @@ class PinView(Answer, frozen=True):
     heading_rad: float | None
     heading_std_rad: float
     note: str
-    by: str  # who set it; the unit itself where that saw it
+    by: str  # the user who set it; the unit itself for a sighting
     set_ms: int
     state: Annotated[str, one_of("used", "conflict", "waiting")]
     residual_m: float | None  # between the pin and the trail
-    sigmas: float | None  # the same in standard deviations of what was expected
+    sigmas: float | None  # the same in standard deviations of the expectation
     text: str  # for a person: what it conflicts with, or what it waits for
 
 
@@ -231,7 +231,7 @@ class ExternalMarkerView(Answer, frozen=True):
     radius_m: float | None  # of the region in which it is; None: unknown
     t_ms: int  # the time to which the place belongs
     stale_ms: int  # from then on it is old
-    site_id: str = ""  # in whose frame its place is: a marker is shown on each site
+    site_id: str = ""  # incident whose frame its place uses: a marker is shown on each site
 
 
 class UnitView(Answer, frozen=True):
@@ -284,7 +284,7 @@ class DeliveryView(Answer, frozen=True):
     reason: str  # of a refusal, or of a withdrawal
     # self: on the member's own unit; empty: not yet
     acknowledged_via: Annotated[str, one_of("self", "radio", "")]
-    can_be_notified: bool | None  # as was known while more was to come; None: not known yet
+    can_be_notified: bool | None  # as known at the last event; None: not known yet
     repeated_ms: int | None = None  # when the order was sent again last
     ended_ms: int | None = None  # the unit has answered that it knows that the order is over
     # Of a LOCATE: how the unit signals its place; empty: not known.
@@ -302,7 +302,7 @@ class CommandView(Answer, frozen=True):
     expires_ms: int
     asks_wearer: bool  # done only when the wearer has acknowledged it
     notifies_wearer: bool  # an output of each unit that has one is to notify its wearer
-    open: bool  # more is to come of it
+    open: bool  # open for further answers
     units: tuple[DeliveryView, ...]
     incident_id: str  # that was open when it was given; empty: none was
     ended_ms: int | None = None  # all clear, stopped, or its incident closed; None: it stands
@@ -420,7 +420,7 @@ class HealthView(Answer, frozen=True):
     forwarders: tuple[ForwarderView, ...] = ()  # live connections with other systems
     radio: tuple[RadioView, ...] = ()  # channels whose audio is recorded
     archive: ArchiveView | None = None  # None: incidents are archived by a command alone
-    reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
+    reading: float | None = None  # share of its log; the last stored state is shown
 
 
 class GapView(Answer, frozen=True):
@@ -439,9 +439,9 @@ class ReplayView(Answer, frozen=True):
     at_ms: int
     speed: float
     playing: bool
-    seeking: bool = False  # on the way to ``at_ms``; what is shown is of another time
-    flaws: tuple[str, ...] = ()  # why not all is shown as it was, in words
-    gap: GapView | None = None  # in which it stands: what is shown is of before
+    seeking: bool = False  # on the way to ``at_ms``; the shown state is of another time
+    flaws: tuple[str, ...] = ()  # reason why parts are not shown as recorded, in words
+    gap: GapView | None = None  # around its time: the shown state is of before
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
@@ -517,7 +517,7 @@ class _WhatChanges(msgspec.Struct, frozen=True, omit_defaults=True, kw_only=True
 
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
-    trails: Mapping[str, Annotated[msgspec.Raw, _POINTS]] = {}  # whole, of units whose past changed
+    trails: Mapping[str, Annotated[msgspec.Raw, _POINTS]] = {}  # of units whose past changed
     pins: tuple[PinView, ...] | None = None  # all of them, where any changed
     beacons: tuple[BeaconView, ...] | None = None
     external: tuple[ExternalMarkerView, ...] | None = None  # all of them, where any changed

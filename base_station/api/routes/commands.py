@@ -98,7 +98,7 @@ class Confirmation(Form):
 
 
 class Repeat(Form):
-    unit_id: UnitIdText | None = None  # None: all who have not answered
+    unit_id: UnitIdText | None = None  # None: all members without an answer
     expires_s: Lasts = 600.0
 
 

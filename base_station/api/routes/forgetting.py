@@ -21,11 +21,11 @@ router = APIRouter(tags=["forgetting"])
 
 
 class NameConfirmation(Form):
-    name: Name  # of what is to be forgotten, as it is shown: it cannot be undone
+    name: Name  # description of the subject, as it is shown: an erasure cannot be undone
 
 
 class PersonConfirmation(NameConfirmation):
-    unassign: bool = False  # what the person wears; else that is refused
+    unassign: bool = False  # units that the person wears; otherwise that is refused
 
 
 class Progress(BaseModel):
@@ -103,7 +103,7 @@ def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJo
     if kind == "person":
         for unit_id in station.worn_by(subject_id):
             station.perform(by, Unassign(unit_id))
-        station.projection.flush()  # else it would be stored when all else is forgotten
+        station.projection.flush()  # otherwise it would be stored behind the erasure
     return desk.add(by, kind, subject_id)
 
 
@@ -119,7 +119,7 @@ def _desk(station: Services) -> ErasureQueue:
             "A message has not reached all to whom it goes, and would not any more: wait until it "
             "has, or its time is over.",
         )
-    station.projection.flush()  # what still is to be stored would be stored afterwards
+    station.projection.flush()  # pending records would be stored afterwards
     return station.forgettings
 
 

@@ -51,7 +51,7 @@ class WebSocketClosing(Exception):  # noqa: N818  # it is no error
         self.reason = reason
 
 
-Deltas = Literal["units", "fields"]  # of a unit that changed: all of it, or the changed fields
+Deltas = Literal["units", "fields"]  # of a changed unit: all fields, or the changed ones
 
 
 class PictureRequest(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):

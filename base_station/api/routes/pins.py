@@ -83,7 +83,7 @@ class BeaconForm(Form):
     floor: Floor | None = None
     std_m: Std = 0.5
     reach_m: Annotated[float, Field(ge=0.0, le=100.0)] = 3.0
-    incident_id: PersonIdText | None = None  # on whose site; None: of the only open one
+    incident_id: PersonIdText | None = None  # incident of the site; None: the only open one
 
 
 # Fields that a moved one may keep; they have the same names in its view.

@@ -38,7 +38,7 @@ class Trails(Answer, frozen=True):
     incident_id: str
     kind: TrailKind
     made_ms: int  # when it was worked out
-    is_newest: bool  # False: more of it is coming out of a journal, and is worked out soon
+    is_newest: bool  # False: a journal is being read, and the trail is solved again soon
     trails: tuple[TrailAnswer, ...]
 
 

@@ -74,7 +74,7 @@ class UnitStartForm(Form):
 
 class Reference(Form):
     unit_id: UnitIdOrNone
-    incident_id: PersonIdText | None = None  # on whose site; None: of the only open one
+    incident_id: PersonIdText | None = None  # incident of the site; None: the only open one
     down_m: Metres = 0.0
 
 

@@ -23,7 +23,7 @@ class Finding(msgspec.Struct, frozen=True):
     seen_ns: int  # station time of the evidence
     onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
     latched: bool = False  # only a person resolves it
-    about: int | str | None = None  # which of several of one unit: whose, or which fault
+    about: int | str | None = None  # identity among several of one unit: the wearer, or the fault
     measured: float | None = None  # value that was judged, in the rule's unit; None: none
     is_low: bool = False  # of values the lowest is the worst
 
@@ -39,7 +39,7 @@ class Clear(msgspec.Struct, frozen=True):
     seen_ns: int  # station time of the evidence: time passing without news clears nothing
     by: str  # cause of the resolution
     at_once: bool = False  # conclusive: the condition need not last
-    about: int | None = None  # of whose matter it is evidence, where that counts
+    about: int | None = None  # wearer that the evidence concerns, where that counts
 
 
 def switched_off(unit: UnitState) -> Clear | None:

@@ -12,4 +12,4 @@ class ResolutionReason(StrEnum):
     CAUSE_REMOVED = "cause_removed"  # cooled, charged, linked again ...
     UNIT_FAULT = "unit_fault"
     TRAINING = "training"
-    OTHER = "other"  # the note has it
+    OTHER = "other"  # read from the note

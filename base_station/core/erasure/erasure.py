@@ -23,11 +23,11 @@ from shared.messages.station import (
 )
 
 FOREVER_NS = 2**63 - 1
-_OWN_ID = re.compile(r"[0-9a-f]{16}-\d+")  # of an action that nobody gave an id
+_OWN_ID = re.compile(r"[0-9a-f]{16}-\d+")  # of an action without an id
 Record = tuple[int, str, bytes]  # station time, key, payload
-# What these say is where somebody was.
+# These hold places of people.
 PLACE_ACTIONS = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
-TEXT_ACTIONS = frozenset({"SendCommand", "ResolveAlarm"})  # words to somebody, or about them
+TEXT_ACTIONS = frozenset({"SendCommand", "ResolveAlarm"})  # texts to people, or about them
 
 
 class Wearing(msgspec.Struct, frozen=True):
@@ -87,7 +87,7 @@ class Erasure(msgspec.Struct, frozen=True):
     reassignments: tuple[Reassignment, ...] = ()  # where they leave it
     entries: tuple[str, ...] = ()  # ids of assignments by which a unit comes into it
     about_until_ns: int = FOREVER_NS  # alarms of its units: until no console shows it any more
-    person_ids: frozenset[str] = frozenset()  # whose references go: of the people in the incident
+    person_ids: frozenset[str] = frozenset()  # people whose references are removed
     wearers: tuple[tuple[str, str], ...] = ()  # in the incident: unit and person
     elsewhere: tuple[Elsewhere, ...] = ()  # when such references stay
     others: tuple[OtherIncident, ...] = ()

@@ -76,14 +76,14 @@ class _IncidentScan:
         self._members_since: dict[str, int] = {}  # by unit
         self._away_since: dict[tuple[str, str], int] = {}  # by person and unit
         self._others_since: dict[str, int] = {}  # by incident
-        self._units: set[str] = set()  # worn by somebody in the incident
+        self._units: set[str] = set()  # worn by people in the incident
         self._people: dict[str, str] = {}  # names by person id, or none
         self._wearers: set[tuple[str, str]] = set()  # unit and person
         self._windows: list[Wearing] = []
         self._elsewhere: list[Elsewhere] = []
         self._others: list[OtherIncident] = []
         self._hand_backs: list[HandBack] = []
-        self._taken: list[HandBack] = []  # of units outside, whose wearers get one inside
+        self._taken: list[HandBack] = []  # hand-backs of outside units by people who get one inside
         self._reassignments: list[Reassignment] = []
         self._entries: list[str] = []
 
@@ -194,7 +194,7 @@ class _IncidentScan:
         self._hand_backs.append(hand_back)
         if isinstance(done.action, Assign) and not is_new:
             self._entries.append(done.action_id)
-        # That it was erased before: the log tells of its units no other way.
+        # An earlier erasure: the log has its units in no other record.
         of_opening = inserted_action_id(self._opening_id, unit_id)
         if not self._unassigned_ids.isdisjoint({hand_back.inserted_id, of_opening}):
             self._units.add(unit_id)
@@ -203,7 +203,7 @@ class _IncidentScan:
         self._windows.append(Wearing(unit_id, self._members_since.pop(unit_id), t_ns))
         person = self._state.units[unit_id].wearer.person
         if person is None or isinstance(done.action, Assign):
-            return  # nobody wears it, or the action itself says who does
+            return  # unworn, or the action itself names the person
         self._note_person(unit_id, person)
         is_closing = self._closed_ns == t_ns
         again = f"{done.action_id}-again"  # the incident to which it comes may be erased, too

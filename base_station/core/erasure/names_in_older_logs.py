@@ -18,7 +18,7 @@ from base_station.core.state import ERASED_TEXT
 from shared.messages import OperatorAction
 from shared.messages.station import Assign
 
-# The program's own, whoever is called Heat or Fall, and who did something.
+# Texts of the program, also for a person called Heat or Fall, and names of actors.
 _PROGRAM_FIELDS = frozenset(
     {"rule", "level", "part", "code", "reasons", "thresholds", "station", "who"}
 )

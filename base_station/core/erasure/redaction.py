@@ -316,7 +316,7 @@ def _order_without(order: SendCommand, t_ns: int, erasure: Erasure) -> SendComma
     people = _others(order.person_ids, t_ns, erasure)
     if people:
         return msgspec.structs.replace(order, person_ids=people)
-    of = order.incident_id or erasure.incident_id  # nothing else says it any more
+    of = order.incident_id or erasure.incident_id  # no other record holds it any more
     return msgspec.structs.replace(order, text=text, person_ids=(), incident_id=of)
 
 

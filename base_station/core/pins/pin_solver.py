@@ -44,7 +44,7 @@ Floats = NDArray[np.float64]
 
 AHEAD_NS = NS_PER_S // 2  # no wearer gets far meanwhile
 SAME_TIME_S = 1.0  # people report times no more exactly
-MEETING_MOST_M = 50.0  # a partner whose position is known no better than this constrains nothing
+MEETING_MOST_M = 50.0  # a partner with a larger uncertainty constrains nothing
 
 
 @dataclass(frozen=True)

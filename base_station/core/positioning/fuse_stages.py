@@ -30,8 +30,8 @@ class PositionUpdate(msgspec.Struct, gc=False):
     position: Position
     history: PathHistory
     fusers: tuple[Fuser, ...]  # the first one ignores pins
-    has_plan: bool  # whose storeys the fusers know
-    boot: BootState = _LATER  # in whose clock the position is
+    has_plan: bool  # its storeys are known to the fusers
+    boot: BootState = _LATER  # its clock dates the position
     t_ns: int = 0  # station time
     outage_s: float = math.inf  # since the last position of the path
     is_rejected: bool = False  # it does not join the path

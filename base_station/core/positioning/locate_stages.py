@@ -27,7 +27,7 @@ class LocationUpdate(msgspec.Struct, gc=False):
     state: StationState
     unit: UnitState
     history: PathHistory | None
-    boot: BootState  # in whose clock the estimate is
+    boot: BootState  # its clock dates the estimate
     fuser: str  # name of its kind
     header: Header  # of the message
     estimate: Estimate  # without pins

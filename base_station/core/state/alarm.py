@@ -30,7 +30,7 @@ class Alarm(msgspec.Struct):
     code: str = ""  # of the sentence in ``text``; empty: of a checkpoint of an earlier version
     parameters: AlarmParameters = NO_PARAMETERS
     reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
-    note: str = ""  # the user's words about it
+    note: str = ""  # the user's note
     worst: float | None = None  # value so far of the measure of its rule
     peak: float | None = None  # ``worst`` at the last change, as it is logged and shown
 

@@ -38,7 +38,7 @@ class Delivery(msgspec.Struct):
     reason: str = ""  # of a refusal
     expired_ns: int | None = None
     notified_ns: int | None = None  # an output of the unit has notified the wearer
-    # Whether the unit has an output, as far as was known while more was to come; None: not known.
+    # Whether the unit has an output, as known at the last event; None: unknown.
     can_be_notified: bool | None = None
     end_sent_ns: int | None = None  # the unit may know that the order is over for it
     ended_ns: int | None = None  # it has answered that it knows
@@ -46,7 +46,7 @@ class Delivery(msgspec.Struct):
     repeated_ns: int | None = None
     expires_ns: int | None = None  # of the repeat; None: as the command
     all_clear_id: str = ""  # of the command that has ended this evacuation for the unit
-    signal: Signal = ""  # of LOCATE: what the wearer and others perceive; empty: not known
+    signal: Signal = ""  # of LOCATE: signals that the wearer and others perceive; empty: unknown
 
 
 class SentCommand(msgspec.Struct):

@@ -12,7 +12,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Header
 
 MESSAGES_HZ = 400  # a unit sends some fifty
-ALERTS_HZ = 20  # of their own: a mayday comes through whatever else its unit sends
+ALERTS_HZ = 20  # of their own: a mayday passes whatever else its unit sends
 BYTES_PER_S = 1_000_000
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0

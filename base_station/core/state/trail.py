@@ -17,15 +17,15 @@ from base_station.site.simplified_line import corners
 from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
 
-TRAIL_POINTS = 900  # a unit's trail in the console, at most; the log has all of it
+TRAIL_POINTS = 900  # points of a trail in the console, at most; the log has all of them
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
-TRAIL_REST_NS = 15 * NS_PER_S  # a wearer who stands still leaves a point this often
+TRAIL_REST_NS = 15 * NS_PER_S  # a wearer at rest leaves a point this often
 TRAIL_GAP_NS = 20 * NS_PER_S  # over more than this the way is unknown
 TOLERANCE_M = 0.5  # of thinning, at first; doubled while too many points are left
 RECENT_POINTS = 300  # five minutes of walking
 OLDER_POINTS = 500  # at most, of all that was before
-_DOUBLINGS = 10  # 512 m: what is left then are floors and gaps
+_DOUBLINGS = 10  # 512 m: beyond that only floors and gaps are kept
 
 
 class TrailStep(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -25,7 +25,7 @@ from shared.messages import (
     UnitDescription,
 )
 
-STILL_NS = 300 * NS_PER_S  # after so long at the latest a wearer who does not move is published
+STILL_NS = 300 * NS_PER_S  # a wearer at rest is published at least this often
 
 
 class Fault(msgspec.Struct, frozen=True):
@@ -47,7 +47,7 @@ class UnitState(MessageStream):
     label: str = ""
     registered: bool = False
     incident_id: str = ""  # in which its wearer works; empty: unassigned
-    site_id: str = OWN_SITE_ID  # in whose frame its path and position are
+    site_id: str = OWN_SITE_ID  # incident whose frame its path and position use
     site_ns: int = 0  # since when they are; 0: always
     wearer: UnitWearer = msgspec.field(default_factory=UnitWearer)
     link: Link = "never"

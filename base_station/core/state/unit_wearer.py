@@ -9,7 +9,7 @@ import msgspec
 from base_station.core.person_references import reference_to
 
 ERASED_TEXT = "(forgotten)"  # in place of a text about a person
-WEARERS_KEPT = 20  # of a unit, beside those whom an alarm may be about; the log has all of them
+WEARERS_KEPT = 20  # wearers of a unit, beside those of its alarms; the log has all of them
 
 
 class Person(msgspec.Struct, frozen=True):

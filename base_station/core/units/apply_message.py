@@ -107,7 +107,7 @@ def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
             apply_fault(unit, event, t_ns)
         case EventKind.STOPPED:
-            # One that has failed is missing; and it may come out of the journal of a run before.
+            # A failed unit is missing; the message may come from the journal of a run before.
             if event.is_stop_in_order and _is_last_message(unit, event.header):
                 unit.stopped_ns = t_ns
         case _:

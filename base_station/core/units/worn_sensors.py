@@ -13,7 +13,7 @@ class DescribedSensor(msgspec.Struct, frozen=True):
     name: str  # in the unit; empty: its only one
     place: str  # part of the body, such as left_foot; empty: unknown
     place_recognised: bool  # by its motion; else the place is that of the settings
-    mount: str  # how it is fastened, in words
+    mount: str  # way of fastening, in words
     model: str
 
 

@@ -107,7 +107,7 @@ class DepartmentOutbox:
         there stays as it is.  ``reported``: None removes a subject.
         """
         with self._transaction() as database:
-            # One that SQLite ignores because of its id would use up a number.
+            # An event that SQLite ignores because of its id would use up a number.
             database.executemany(
                 "INSERT INTO events (event_id, subject, t_ms, body) SELECT :id, :subject, :t_ms, "
                 ":body WHERE NOT EXISTS (SELECT 1 FROM events WHERE event_id = :id)",

@@ -26,7 +26,7 @@ class TakConfig:
 
     url: str  # tls://HOST:8089, tcp://HOST:8087 or udp://239.2.3.1:6969
     certificate: Path | None = None  # of this client: PEM, or PKCS#12 (.p12) with its key
-    private_key: Path | None = None  # PEM; a .p12 has it inside
+    private_key: Path | None = None  # PEM; a .p12 contains its key
     password_file: Path | None = None  # of the .p12 or of the private key
     ca: Path | None = None  # PEM of the authority that has signed the server's certificate
     server_name: str = ""  # that its certificate stands for, where that is not the host

@@ -19,9 +19,9 @@ from base_station.fusion.gaussian import at_least
 
 SURE_M = 6.0  # a climb that is less known than this, each axis, may be on any stairs
 MOST_STAIRS = 40
-ODDS = 10.0  # so much likelier the same stairs than others: believed
-LEAST_M2 = 0.05  # of what is left, each way
-MAX_OBSERVATIONS = 64  # about the walls' direction; more tell nothing that these do not
+ODDS = 10.0  # likelihood ratio of the same stairs to others that is accepted
+LEAST_M2 = 0.05  # of the remaining uncertainty, each way
+MAX_OBSERVATIONS = 64  # about the walls' direction; more add no information
 OUTLIER2 = 9.0  # squared standard deviations apart: not about the same
 
 
@@ -56,7 +56,7 @@ class LearntBuilding(msgspec.Struct, frozen=True):
 
     stairs: tuple[KnownStairs, ...] = ()
     axes: tuple[tuple[str, Axis], ...] = ()  # by unit
-    axis: Axis | None = None  # what most of them agree upon
+    axis: Axis | None = None  # direction on which most of them agree
 
     def with_axis(self, unit_id: str, axis: Axis) -> LearntBuilding:
         others = tuple(observation for observation in self.axes if observation[0] != unit_id)

@@ -46,7 +46,7 @@ class DominantDirectionFilter(msgspec.Struct):
     axis: Axis | None = None  # in the incident frame
     turn_variance: float = 0.0
     crossed: float = 0.0  # covariance of both
-    is_contradicted: bool = False  # what others know of walls is not of these
+    is_contradicted: bool = False  # walls known by other units are not these
 
     def update(
         self,

@@ -98,7 +98,7 @@ class ClimbDetector(msgspec.Struct):
     here_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     looked_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # where the slope was last looked at
     way_m: float = 0.0  # since then
-    begin_m: tuple[float, float, float] | None = None  # of the climb that goes on
+    begin_m: tuple[float, float, float] | None = None  # of the climb in progress
     end_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # its furthest so far
     level_way_m: float = 0.0  # walked on the level since
     sums_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of place by way, and way

@@ -34,8 +34,8 @@ TRIALS = 2.4  # of log odds that some axis fits by chance: a quarter turn by a l
 WANDER_VAR_PER_S = 0.004**2  # of an own heading beside its drift, while moving
 CELLS = 44  # of a quarter turn
 STEP_RAD = QUARTER_RAD / CELLS
-RATES = np.linspace(-2.0, 2.0, 5)  # of drift, in standard deviations from what is believed
-ASTRAY = 0.02  # of what is believed of a direction: that it is quite another
+RATES = np.linspace(-2.0, 2.0, 5)  # of drift, in standard deviations from the estimate
+ASTRAY = 0.02  # probability that a direction is another one entirely
 OFF = 2.5  # standard deviations from a direction: not that one
 
 _RATE_WEIGHTS = np.exp(-0.5 * RATES**2) / np.exp(-0.5 * RATES**2).sum()
@@ -46,7 +46,7 @@ class StraightSegment(msgspec.Struct, frozen=True):
 
     direction_rad: float
     length_m: float
-    turn_rad: float = 0.0  # the heading correction believed when it was walked
+    turn_rad: float = 0.0  # the heading correction estimated when it was walked
     turn_variance: float = 0.0
     moved_s: float = 0.0  # how long the wearer had moved by then
 
@@ -101,7 +101,7 @@ class DirectionEvidence(NamedTuple):
     evidence: float  # log odds of walls against legs of any direction
     direction_rad: float
     variance: float
-    kept: float  # of the belief: that it is the one that was held before
+    kept: float  # of the estimate: that it is the former one
 
 
 class DirectionWeights(NamedTuple):

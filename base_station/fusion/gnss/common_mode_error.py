@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 COMMON_MOST_M = 1.5  # each axis, of the errors by orbits, clocks and the air for any receiver
 COMMON_PART = 0.45  # of a fix's variance, at most
-OWN_PART = 0.8  # of the rest is slow too; what is left is new with every fix
+OWN_PART = 0.8  # of the rest is slow too; the remainder is new with every fix
 COMMON_S, OWN_S = 1200.0, 300.0  # correlation times, of a receiver that does not move
 MAX_AGE_S = 60.0  # after which nothing is taken off any more
 GATE2 = 13.8  # chi-square of two degrees, 99.9 %
@@ -75,7 +75,7 @@ class CommonModeError(msgspec.Struct):
             return fix
         mean, covariance = self._at(max(t_ns, self.t_ns))
         was_m2, is_m2 = common_m2(fix.horizontal_std_m), float(covariance[_COMMON, _COMMON])
-        if is_m2 >= was_m2:  # known no better than by what the other receiver claims
+        if is_m2 >= was_m2:  # known only as well as the other receiver's stated accuracy
             return fix
         return msgspec.structs.replace(
             fix,

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 MIN_FIXES = 20  # so many fixes that draw the shape of the walk are right after all
-MAX_FIXES = 60  # fixes: who walks slowly comes far enough in a minute, and not in twenty seconds
+MAX_FIXES = 60  # fixes: a slow walk leads far enough in a minute, and not in twenty seconds
 SPREAD_M = 7.0  # root mean square of that stretch of path
 MAX_RESIDUAL_PART = 0.25  # part of the fixes' variance that is not the shape of the walk
 SCALES = (0.75, 1.33)

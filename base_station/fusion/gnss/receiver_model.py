@@ -29,7 +29,7 @@ MIN_WHITE_PART = 0.1
 WHITE_MEMORY_PAIRS = 200.0  # pairs that are remembered
 MAX_WHITE_PART = 4.0
 IN_A_ROW_NS = 3 * NS_PER_S
-EXCESS = 2.0  # what a receiver admits beyond its usual accuracy is but half of it
+EXCESS = 2.0  # a receiver's excess over its usual accuracy is only half of the error
 
 
 class ReceiverModel(msgspec.Struct):

@@ -9,7 +9,7 @@ from base_station.fusion.interface import MAX_FIX_DISTANCE_M, FixVerdict, PlaceF
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix
 
-STD_FLOOR_M = 1.27  # each axis: 1.5 m CEP of data sheets; who claims better is too sure
+STD_FLOOR_M = 1.27  # each axis: 1.5 m CEP of data sheets; a better claim is too optimistic
 STD_UNSTATED_M = 10.0
 STD_ABSURD_M = 100.0
 DEEPEST_M, HIGHEST_M = -1_000.0, 10_000.0  # above the ellipsoid, of any place on the ground

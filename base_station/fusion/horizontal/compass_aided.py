@@ -38,9 +38,7 @@ class CompassAidedFilter(HorizontalFilter):
     def __init__(self, scale_std: float, linear_rad: float, wander_radps: float) -> None:
         super().__init__(scale_std, linear_rad, wander_radps)
         self._parameters = scale_std, linear_rad, wander_radps
-        self._without_compass: HorizontalFilter | None = (
-            None  # what it would be without the compass
-        )
+        self._without_compass: HorizontalFilter | None = None  # the estimate without the compass
         self._compass = CompassTest()
 
     def save(self) -> SavedCompassAided:

@@ -32,7 +32,7 @@ class GnssObservation(msgspec.Struct, frozen=True):
     since_north_m: float  # own path walked since it was valid
     since_east_m: float
     slow_m: float  # weight of the receiver's slow error, which has unit variance
-    common_m: float  # and of the one that all receivers of the site share
+    common_m: float  # and of the error that all receivers of the site share
     white_m2: float  # variance of the rest, each axis
 
 

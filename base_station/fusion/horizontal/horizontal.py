@@ -45,7 +45,7 @@ from shared.geo import wrap_pi
 Floats = NDArray[np.float64]
 
 _UNKNOWN_VAR_M2 = 1e8
-KEEPS_ON = 0.9  # of what it drifts by: that much less is no change
+KEEPS_ON = 0.9  # of its drift: that much less is no change
 REOPEN = 1.5  # times the width at which one hypothesis was enough
 
 

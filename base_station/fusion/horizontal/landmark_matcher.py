@@ -39,7 +39,7 @@ class LandmarkMatcher(msgspec.Struct):
     climb: Climb | None = None  # just over
     segment: StraightSegment | None = None
     moved_s: float = 0.0  # how long the wearer has moved
-    is_corrected: bool = False  # of stairs: the own place is not the own word any more
+    is_corrected: bool = False  # of stairs: the own observation no longer counts as one's own
     shared_m2: float = SHARED_M2  # of the own place's variance: by which everybody errs alike
 
     def add_increment(self, increment: OdometryIncrement, down_m: float) -> None:

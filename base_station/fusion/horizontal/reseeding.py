@@ -27,10 +27,10 @@ from base_station.site.floor_grid import FloorGrid
 Floats = NDArray[np.float64]
 
 SAMPLES = 2000
-WIDENING = 2.0  # times as far as stated half of them are: who is elsewhere erred by more than that
+WIDENING = 2.0  # times the stated error for half of them: a unit elsewhere has a larger error
 LOG_CUTOFF = 6.0  # of log likelihood less than the cloud: not followed further back
 PRIOR_ELSEWHERE = 0.02  # of clouds, before anything speaks for it: about one person in a hundred
-JITTER = np.array([0.1, 0.1, 0.01, 5e-5])  # place, turn and drift of what is resampled
+JITTER = np.array([0.1, 0.1, 0.01, 5e-5])  # place, turn and drift of resampled particles
 
 
 class Reseeding(NamedTuple):

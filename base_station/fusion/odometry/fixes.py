@@ -21,7 +21,7 @@ class PathFixes(msgspec.Struct, array_like=True):
     """``frame``: how the incident frame has moved since anything was packed."""
 
     packed: Packed = msgspec.field(default_factory=Packed)
-    loose: bytes = b""  # rows by time: what comes late, out of a journal, comes between live ones
+    loose: bytes = b""  # rows by time: late fixes, out of a journal, come between live ones
 
     def __bool__(self) -> bool:
         return bool(self.loose or self.packed)

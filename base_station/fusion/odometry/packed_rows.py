@@ -29,7 +29,7 @@ class RowChunk(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     first: int  # the earliest time
     last: int  # the latest
-    thinned: int  # how often rows of it were left out
+    thinned: int  # number of times that rows were thinned
     columns: bytes
 
 

@@ -99,7 +99,7 @@ class PathHistory(msgspec.Struct):
         running_ns = self.runs.begin_ns
         insert_late(self.own, self.runs, position, t_ns, estimate, floor)
         if self.start.begin_ns == running_ns:
-            self.start.begin_ns = self.runs.begin_ns  # an earlier point of it may have come
+            self.start.begin_ns = self.runs.begin_ns  # an earlier point may have come late
 
     def set_live_estimate(self, estimate: Estimate, floor: int | None) -> None:
         """Set the estimate without pins at the newest point."""

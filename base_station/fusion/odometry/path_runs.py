@@ -14,7 +14,7 @@ class PathRuns(msgspec.Struct, array_like=True):
     boot_id: int = 0
     begin_ns: int = 0  # of the running boot
     ended_boot_id: int = 0  # of the run before it
-    since_ns: int = 0  # what was before is not wanted
+    since_ns: int = 0  # the path before is not wanted
     opened_ns: int = 0  # when the incident was opened
 
     def begin(self, boot_id: int, t_ns: int, *, follows: bool) -> None:

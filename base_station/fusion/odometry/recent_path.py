@@ -13,7 +13,7 @@ from shared.messages import Position
 
 KEPT_NS = 30 * 60 * NS_PER_S
 STEP_NS = NS_PER_S // 5
-DENSE_NS = 60 * NS_PER_S  # of it every step, of what is older one in
+DENSE_NS = 60 * NS_PER_S  # every step of the last minute, of older ones one in
 COARSE_NS = 2 * NS_PER_S
 MOST_POINTS = 600  # that are not packed; a minute has half as many
 NEAR_NS = 5 * NS_PER_S  # a place further from any known point is not known

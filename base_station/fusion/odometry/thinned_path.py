@@ -22,7 +22,7 @@ CLIMB_M = 0.5
 STEP_NS = 10 * NS_PER_S
 STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bends
 MOVING_M = 0.05  # between two positions: the wearer moved
-FILLED_NS = 30 * NS_PER_S  # a journal is being read: what is packed cannot be filled
+FILLED_NS = 30 * NS_PER_S  # a journal is being read: packed rows cannot be filled
 MOST_LOOSE = 32 * CHUNK
 _SHOWN = "shown_north_cm", "shown_east_cm", "shown_down_cm"
 

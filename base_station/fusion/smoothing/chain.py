@@ -20,7 +20,7 @@ from base_station.fusion.smoothing.interface import UnitEvidence
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 STATES = 7
-WALKED = 5  # of which tell of the own path
+WALKED = 5  # those that constrain the own path
 SLOW = 5  # the first of the receiver's
 NS_TO_S = 1e-9
 
@@ -35,7 +35,7 @@ class WalkNoise:
     scale_std: float = 0.015
     drift_radps: float = 6e-4
     drift_wander_radps: float = 6e-5  # of that rate in a minute
-    open_drift_s: float = 600.0  # while turn and drift are not known: the drift goes on so long
+    open_drift_s: float = 600.0  # while turn and drift are unknown: duration of the drift
     restart_m: float = 5.0
     unguided_mps: float = 1.5
 

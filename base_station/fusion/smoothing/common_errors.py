@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Term = tuple[Ints, Floats | float]
 
-AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
+AXIS_STD_RAD = 0.3  # of the variance that is added in one step
 START_PART = 0.65  # of a start's variance: that error is common to all who begin there
 PLAN_STD_M = 0.25  # by which plans lie aside, each axis
 COMMON_KNOT_S = 600.0  # from one knot of the common error to the next
@@ -55,7 +55,7 @@ class CommonErrors:
             self.common_std_m = float(np.sqrt(common_m2(best_m)))
         self.plan = self._common + 2 * len(self._common_t_ns)
         self.landmarks = self.lines = self.end = self.plan + 2
-        self._x = np.zeros(self.end - first)  # as last believed
+        self._x = np.zeros(self.end - first)  # the last estimate
 
     def add_priors(self, equations: Equations) -> None:
         equations.add(AXIS_STD_RAD, 0.0, (self.axes, 1.0))

@@ -51,7 +51,7 @@ class ConditionalPrediction:
     def __init__(self, expected: Prediction, used: Sequence[int] = ()) -> None:
         self._expected = expected
         size = len(expected.mean_m)
-        self._known = np.empty((size, size))  # by row what was taken, against all; whitened
+        self._known = np.empty((size, size))  # by row: used constraints, against all; whitened
         self._whitened = np.empty(size)  # its innovations, whitened
         self._rows = 0
         for one in used:

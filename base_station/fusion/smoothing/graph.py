@@ -114,7 +114,7 @@ class Graph:
     def step(self, noise: WalkNoise) -> float:
         """Solve once about the last solution; returns the largest movement of a knot (m)."""
         if hasattr(self, "_normal"):
-            del self._normal  # it is the largest thing there is: never two of them
+            del self._normal  # it is the largest array: never two of them
         self._normal = self._equations(noise)
         of_chains, shared = self._normal.solve()
         moved_m = 0.0

@@ -52,7 +52,7 @@ class Heights:
     path: PathArrays
     assumed: bool  # no evidence how high it began
     begin_m2: float  # variance of the shift at the first point
-    grown_m2: Floats  # (n - 1,) of what comes to it until the next
+    grown_m2: Floats  # (n - 1,) increments until the next
 
     @staticmethod
     def of(evidence: UnitEvidence) -> Heights:

@@ -35,7 +35,7 @@ class PositionConstraint:
     down_std_m: float = ON_FLOOR_STD_M
     heading_rad: float | None = None  # of travel, in the incident frame
     heading_std_rad: float = 0.0
-    source: str = ""  # of repeated and equally wrong places: a beacon, or a partner who was met
+    source: str = ""  # of repeated, equally wrong places: a beacon, or a met partner
 
     @property
     def source_key(self) -> str:
@@ -72,9 +72,9 @@ class Verdict:
 
     used: bool
     residual_m: float  # between it and the trail
-    sigmas: float  # the same in standard deviations of what was expected without it
+    sigmas: float  # the same in standard deviations of the expectation without it
     against: str = ""  # the one it contradicts most; empty: the path and the fixes
-    above_m: float = 0.0  # so far above the trail it is, where that is what contradicts
+    above_m: float = 0.0  # its height above the trail, where that contradicts
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class PathGraph:
         chains, meetings = self._chains(units), Encounters(units, encounters)
         problem = build(units, chains, meetings, self.noise)
         while meetings.split_by_floor(problem.graph):
-            del problem  # its solution is the largest thing there is: never two of them
+            del problem  # its solution is the largest array: never two of them
             problem = build(units, chains, meetings, self.noise)
         add_live_estimates(problem)
         add_wall_constraints(problem)

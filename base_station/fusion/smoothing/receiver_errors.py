@@ -21,8 +21,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SLOW_S = 30.0  # for so long surroundings do the same to a receiver that is carried about
-STAYS_M = 5.0  # and one that goes no further stays where it is
-EXCESS = 2.0  # what a receiver admits beyond its best is but half of it
+STAYS_M = 5.0  # and one that moves no further stays where it is
+EXCESS = 2.0  # a receiver's excess over its best accuracy is only half of the error
 WRONG_PART = 0.05  # of fixes: they are off by more than any model gives
 WRONG_M = 6.0  # each axis
 AFTER_NS = 1_000_000_000  # behind the last point: still of this path

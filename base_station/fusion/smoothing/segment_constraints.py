@@ -114,7 +114,7 @@ class Axes:
     ) -> None:
         """Assign segments to buildings by their estimated places."""
         self._segments = segments
-        self.rad = np.full(AXES, np.nan)  # of each building, as it is believed; NaN: none shows
+        self.rad = np.full(AXES, np.nan)  # of each building, the estimate; NaN: none is found
         cells = {
             unit_id: np.rint(one.middles_m(estimates[unit_id]) / CELL_M).astype(np.int64)
             for unit_id, one in segments.items()

@@ -22,7 +22,7 @@ from base_station.fusion.smoothing.landmarks import Landmark, Visit
 
 Floats = NDArray[np.float64]
 
-ODDS = 3.0  # so much likelier the same stairs than others: believed
+ODDS = 3.0  # likelihood ratio of the same stairs to others that is accepted
 STD_M = 0.3  # each axis, of a climb's middle by the stairs'
 TAIL = 2.4
 
@@ -31,7 +31,7 @@ TAIL = 2.4
 class _Known:
     """Stairwell with its visits."""
 
-    stairs: LearntStairs  # as all climbs on it tell
+    stairs: LearntStairs  # by all climbs on it
     visits: list[Visit] = field(default_factory=list)
 
     def take(self, stairs: LearntStairs, visit: Visit) -> None:

@@ -61,7 +61,7 @@ class Weather(msgspec.Struct):
 class Barometers(msgspec.Struct):
     """Barometers of all units, with the reference."""
 
-    reference_id: str | None = None  # the unit whose barometer stays where it is
+    reference_id: str | None = None  # the unit whose barometer stays at its place
     reference_down_m: float = 0.0
     reference_walked: tuple[int, float] = 0, 0.0  # which run of its program, and how far in that
     carried_ns: int | None = None  # when that grew last

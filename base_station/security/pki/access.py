@@ -73,7 +73,7 @@ _RULES_OF_KIND = {
             [*_EVERYTHING, *_STATION_KEYS, *_DEPARTMENT_KEYS],
         ),
     ),
-    # A unit learns what the station listens to, so that it sends that and nothing else.
+    # A unit learns which keys the station subscribes to, so that it sends only those.
     Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING), _CLOCK_RULES[Holder.UNIT]),
     Holder.TRACKER: (
         _rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),

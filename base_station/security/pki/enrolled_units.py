@@ -77,7 +77,7 @@ class EnrolledUnits:
 def _audit_text(entry: Entry) -> Iterator[tuple[str, tuple[str, str]]]:
     who = f"{entry.holder.value} {entry.name} as {entry.common_name}"
     until = f"until {entry.valid_to:%Y-%m-%d}"
-    for serial in entry.earlier:  # of one that was renewed before a station saw it
+    for serial in entry.earlier:  # of a certificate renewed before a station read it
         yield f"issued-{serial}", ("IssuedCertificate", f"{who}, renewed since")
     yield f"issued-{entry.serial}", ("IssuedCertificate", f"{who}, {until}")
     if entry.revoked is not None:

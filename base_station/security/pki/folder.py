@@ -209,7 +209,7 @@ class PkiFolder:
                 f"{self._folder} belongs to another authority; move it away, or give another "
                 "folder with --data"
             )
-        own = self.own_common_name()  # where there is none, what is joined takes its place
+        own = self.own_common_name()  # where there is none, the joined certificate takes its place
         names = [e.name for e in self.registry().entries if e.common_name == own]
         if names not in ([], [enrolment.name]):
             raise ConfigError(

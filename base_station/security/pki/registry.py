@@ -20,7 +20,7 @@ class Entry(msgspec.Struct, frozen=True):
 
     holder: Holder
     name: str
-    common_name: str  # exactly one entry has it; access rules name it
+    common_name: str  # unique to one entry; access rules name it
     serial: str  # hexadecimal
     valid_from: datetime
     valid_to: datetime

@@ -14,7 +14,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.errors import MusterError
 from shared.tls import TlsIdentity, parse_certificate
 
-_RENEWAL_MARGIN = timedelta(hours=1)  # before the end of the one in use, whatever goes on
+_RENEWAL_MARGIN = timedelta(hours=1)  # before the end of the one in use, also during an incident
 
 
 class Renewal:

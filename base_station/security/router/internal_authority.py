@@ -48,7 +48,7 @@ class InternalAuthority:
 
     def _new_client_context(self, common_name: str) -> ssl.SSLContext:
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-        context.check_hostname = False  # the port is this process's own, whatever its address
+        context.check_hostname = False  # the port is this process's own, at any address
         identity = self._identity(common_name)
         context.load_verify_locations(cadata=identity.authority.decode("ascii"))
         load_identity(context, identity)

@@ -53,7 +53,7 @@ class RoundRobin:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        self._waiting: dict[str, deque[asyncio.Future[None]]] = {}  # whose turn is next comes first
+        self._waiting: dict[str, deque[asyncio.Future[None]]] = {}  # in order of their turns
         self._scheduled = False
 
     async def wait(self, network: str) -> None:

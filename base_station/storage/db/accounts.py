@@ -304,7 +304,7 @@ class Accounts:
         token, owner_role = found
         if token.expires_ns is not None and token.expires_ns <= self._clock.utc_ns():
             return None
-        # An owner who was demoted takes the tokens along.
+        # Tokens of a demoted owner are demoted too.
         role = min(Role.of(token.role), Role.of(owner_role))
         scopes = frozenset(token.scopes.split())
         return Principal(token.username, role, scopes, token.expires_ns, token.unit_id)

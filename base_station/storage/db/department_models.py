@@ -107,6 +107,6 @@ class ReportedPerson(DepartmentBase):
 
     station: Mapped[str] = mapped_column(primary_key=True)
     person_id: Mapped[str] = mapped_column(primary_key=True)
-    name: Mapped[str]  # empty: the person was forgotten
+    name: Mapped[str]  # empty: the person was erased
     crew: Mapped[str]
     role: Mapped[str]

@@ -43,7 +43,7 @@ class Reported(NamedTuple):
 
     last_seq: int
     new: int  # of the batch, events that were not there
-    people: tuple[PersonEvent, ...]  # people who were named, renamed or forgotten
+    people: tuple[PersonEvent, ...]  # people who were named, renamed or erased
 
 
 class DepartmentTables:
@@ -170,7 +170,7 @@ def _insert_event(
         "body": b"" if has_name else bytes(event.body),
     }
     insert = insert_into(session, ReportedEvent).values(row).on_conflict_do_nothing()
-    # A server's ``rowcount`` does not say whether there was a conflict.
+    # A server's ``rowcount`` does not show whether there was a conflict.
     return session.scalar(insert.returning(ReportedEvent.number)) is not None
 
 

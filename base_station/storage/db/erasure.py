@@ -161,7 +161,7 @@ def _alarms(session: Session, erasure: Erasure) -> None:
         raised = alarm.unit_id, alarm.raised_ns
         covered = erasure.covers(*raised)
         if covered or erasure.is_about(*raised):
-            # What it said before may name others than what it says now.
+            # Its earlier texts may name others than its present ones.
             people = erasure.person_ids if covered else erasure.people_in_alarm(*raised)
             _rewrite_alarm(session, alarm, _Names(erasure, people), covered)
 
@@ -234,7 +234,7 @@ def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
         return entry.detail
     try:
         done = msgspec.json.decode(entry.detail, type=kind)
-    except msgspec.DecodeError:  # nothing is left of it
+    except msgspec.DecodeError:  # empty afterwards
         return entry.detail
     left = without_texts(entry.t_ns, done, erasure)
     return entry.detail if left is done else msgspec.json.encode(left).decode()
@@ -244,7 +244,7 @@ def _without_wearer(entry: AuditEntry, erasure: Erasure) -> str:
     """Assignment without its wearer: in a small station crew and role are as good as a name."""
     try:
         worn = msgspec.json.decode(entry.detail, type=Assign)
-    except msgspec.DecodeError:  # nothing is left of it
+    except msgspec.DecodeError:  # empty afterwards
         return entry.detail
     if erasure.incident_id:
         if not erasure.covers(worn.unit_id, entry.t_ns):
@@ -259,7 +259,7 @@ def _alarm_raised(entry: AuditEntry) -> tuple[str, int] | None:
     """Unit of the alarm that was resolved, and when that was raised."""
     try:
         noted = msgspec.json.decode(entry.detail, type=ResolveAlarm)
-    except msgspec.DecodeError:  # nothing is left of it
+    except msgspec.DecodeError:  # empty afterwards
         return None
     return raised_of(noted.alarm_id)
 
@@ -268,7 +268,7 @@ def _apart(entry: AuditEntry, erasure: Erasure) -> str:
     """Detail of an action at the other station, which may be recorded long after its time."""
     try:
         done = msgspec.json.decode(entry.detail, type=DoneApart)
-    except msgspec.DecodeError:  # nothing is left of it, or nobody knows what it says
+    except msgspec.DecodeError:  # empty afterwards, or unreadable
         return ERASED_TEXT
     left = remaining_text(done, entry.t_ns, erasure, OlderNames(erasure.names))
     return msgspec.json.encode(msgspec.structs.replace(done, what=left)).decode()

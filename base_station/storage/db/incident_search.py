@@ -22,7 +22,7 @@ from base_station.storage.db.search_index import (
 )
 from base_station.storage.db.window import EVER, Window
 
-_LAST = "\U0010ffff"  # behind whatever may follow the beginning of a word
+_LAST = "\U0010ffff"  # behind every continuation of a word's beginning
 
 
 class IncidentQuery(msgspec.Struct, frozen=True):

@@ -41,7 +41,7 @@ from shared.errors import StoreError
 
 WHOLE_BYTES_MAX = 256_000_000  # of a larger file the tracks are left out
 _LARGE: tuple[type[Base], ...] = (TrackPoint, SmoothedIncident, IncidentTrails, PostProcessingCache)
-_WAITING_MAX = 20_000  # transactions; who logs in makes two
+_WAITING_MAX = 20_000  # transactions; a login makes two
 
 _log = logging.getLogger(__name__)
 

@@ -90,10 +90,10 @@ class ApiToken(Base):
     username: Mapped[str] = mapped_column(ForeignKey("users.username", ondelete="CASCADE"))
     name: Mapped[str]
     role: Mapped[str]  # at most that of its owner
-    scopes: Mapped[str] = mapped_column(server_default="")  # words with spaces; empty: all
+    scopes: Mapped[str] = mapped_column(server_default="")  # separated by spaces; empty: all
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]
-    unit_id: Mapped[str] = mapped_column(server_default="")  # whose samples it posts; empty: none's
+    unit_id: Mapped[str] = mapped_column(server_default="")  # it posts samples of; empty: none
 
 
 class Tombstone(Base):
@@ -404,7 +404,7 @@ class IndexedIncident(Base):
     __tablename__ = "indexed_incidents"
 
     incident_id: Mapped[str] = mapped_column(primary_key=True)
-    known_ns: Mapped[int]  # station time of the newest of it; 0: it is open, or to be indexed again
+    known_ns: Mapped[int]  # station time of its newest record; 0: open, or to be indexed again
 
 
 class SearchTerm(Base):

@@ -135,7 +135,7 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
             pass  # its changes of alarms come with the same step
         case _:
-            pass  # the audit and the log have it, or what is stored was rewritten before
+            pass  # the audit and the log have it, or the stored one was rewritten before
 
 
 def _import(session: Session, t_ns: int, by: str, action: ImportFile | RemoveImport) -> None:

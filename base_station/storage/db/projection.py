@@ -54,7 +54,7 @@ class SqlProjection:
         self._pending: deque[Projection] = deque()
         self._changed = threading.Condition()
         self._taken = 0  # projections given to ``project`` so far
-        self._decided = 0  # of these, up to the last one that is urgent
+        self._decided = 0  # of these, up to the last urgent one
         self._settled = 0  # of these, written or given up
         self._in_memory = 0  # of those pending, the first ones, that are in the copy in memory
         self._dropped = 0
@@ -176,7 +176,7 @@ class SqlProjection:
     def _next_batch(self) -> tuple[Projection, ...]:
         """The oldest that are not in the tables."""
         if not self._store.in_memory:
-            self._in_memory = 0  # the file lacks what only the copy in memory had
+            self._in_memory = 0  # the file lacks records that only the copy in memory had
         first = self._in_memory
         return tuple(islice(self._pending, first, first + BATCH))
 

@@ -18,13 +18,13 @@ from shared.folder_lock import FolderLock
 from shared.own_files import read_own, write_own
 
 _TRIES = 5  # a command beside the station may be writing
-_WITH_WAL = ("", "-wal")  # what a database consists of: a kill leaves changes in the second one
+_WITH_WAL = ("", "-wal")  # files of a database: a kill leaves changes in the second one
 
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
     """Raises sqlite3.Error, or StoreError where it cannot be copied."""
-    if FolderLock.is_held(path.parent):  # a station has it open, with all that stands beside it
+    if FolderLock.is_held(path.parent):  # open in a station, with its journal files
         with closing(connected(path, "mode=ro")) as connection:
             yield connection
         return

@@ -22,7 +22,7 @@ from shared.errors import UserError
 
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
 SCOPE = "samples"
-MOST_OF_A_UNIT = 5  # one in use, and one that takes its place
+MOST_OF_A_UNIT = 5  # one in use, and its successor
 
 
 class UnitTokens:

@@ -38,7 +38,7 @@ HASHES = "SHA256SUMS"  # as `sha256sum --check` reads it
 _SPARED_BYTES = 256_000_000  # of the disk, for the station's log
 _PART = ".part"
 _TIMEOUT_S = 5.0  # of one question
-_CHANCES = 2  # for the parts on the disk since before, and for all of it anew
+_CHANCES = 2  # for the parts already on the disk, and for a new transfer
 
 T = TypeVar("T")
 Steps = Generator[None, None, T]  # a pause before each question
@@ -92,7 +92,7 @@ class Transfer:
         self._took_ns = 0  # by the last answer
         self._announced: set[str] = set()  # files that the unit has listed since the first request
         self._missing: set[str] = set()  # of these: not here as they were listed
-        self._unproven: set[str] = set()  # whose hash the unit could not be asked for
+        self._unproven: set[str] = set()  # file whose hash the unit could not be asked for
         self._lock = FolderLock(
             self.folder, "pull of this unit's recording", "let that one end, or stop it"
         )
@@ -189,7 +189,7 @@ class Transfer:
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
             )
             digest = _digest_of(part)
-            is_evicted = not answer.sha256  # and yet all of it is here, each piece of it intact
+            is_evicted = not answer.sha256  # and yet the file is complete, each piece intact
             if is_evicted or digest == answer.sha256:
                 part.replace(whole)
                 self._write_hash(file.path, digest.hex())
@@ -254,7 +254,7 @@ class Transfer:
                 understood = read(answer)
                 self.state, self.problem = TransferState.FETCHING, ""
                 return understood
-        except Exception as error:  # noqa: BLE001  # whatever it is, it is no answer
+        except Exception as error:  # noqa: BLE001  # any error means: no answer
             logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
         self._pace.note_nothing()
         self.state = TransferState.WAITING
