@@ -1,4 +1,4 @@
-"""PAR at the console: whose it is, what is asked before it is entered, and undoing it."""
+"""PAR at the console: due members, confirmation questions, and undoing an entry."""
 
 from __future__ import annotations
 

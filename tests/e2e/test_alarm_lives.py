@@ -1,4 +1,4 @@
-"""All alarms with what became of each: filtered, resolved with a reason, in a replay too."""
+"""List of all alarms with their transitions: filtered, resolved with a reason, also in a replay."""
 
 from __future__ import annotations
 

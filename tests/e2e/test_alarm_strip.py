@@ -1,4 +1,4 @@
-"""The strip of open alarms: what it says of now beside what it was raised for."""
+"""The strip of open alarms: present values beside those of the raising."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The zone of alarms: a row a member, floods folded, and nothing on the page moves for them."""
+"""The zone of alarms: one row a member, floods folded, and a layout that does not move."""
 
 from __future__ import annotations
 

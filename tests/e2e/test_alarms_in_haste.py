@@ -1,4 +1,4 @@
-"""Alarms and commands are not done by a slip, and nothing hides what cannot wait."""
+"""Alarms and commands are not triggered by a slip, and urgent ones are never hidden."""
 
 from __future__ import annotations
 

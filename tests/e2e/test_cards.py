@@ -1,4 +1,4 @@
-"""Cards: who is in danger comes first, and what each says of its person."""
+"""Cards: people in danger come first, and each card shows its person's state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The console in a real browser, on a real station, with a unit that speaks over the real bus.
+"""The console in a browser, at a station with a unit over the bus.
 
 One story in several tests: they run in the order in which they stand here.
 """

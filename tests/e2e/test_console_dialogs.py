@@ -1,4 +1,4 @@
-"""What stands in the console's menu: users, units, people, and incidents that are over.
+"""Dialogs of the console's menu: users, units, people, and closed incidents.
 
 One story in several tests: they run in the order in which they stand here.
 """

@@ -1,4 +1,4 @@
-"""Themes, keys, wall and gloves at a real station, with a unit whose wearer calls for help."""
+"""Themes, keys, wall display and gloves at a station, with a unit whose wearer calls for help."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a commander asks of people at the console, and how their answers are seen.
+"""Orders of a commander at the console, and the display of their answers.
 
 One story in several tests: they run in the order in which they stand here.
 """

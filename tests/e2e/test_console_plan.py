@@ -1,4 +1,4 @@
-"""What is done on the plan at the console: pins, trails, its place on the earth.
+"""Work on the plan at the console: pins, trails, its place on the Earth.
 
 One story in several tests: they run in the order in which they stand here.
 """

@@ -1,4 +1,4 @@
-"""Dialogs by keys: where the focus begins, where it stays, and where it goes back to."""
+"""Dialogs by keys: initial focus, focus inside, and focus after closing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Dialogs say what they cannot do, and end alone."""
+"""Dialogs report what they cannot do, and end alone."""
 
 from __future__ import annotations
 

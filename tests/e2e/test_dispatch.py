@@ -1,4 +1,5 @@
-"""From the dispatch centre to the plan: a real station, its command, and a person who opens.
+"""From the dispatch centre to the plan: a station, its command, and a person who opens the
+incident.
 
 One story in several tests: they run in the order in which they stand here.
 """

@@ -1,4 +1,4 @@
-"""Who logs in for the first time at a new station chooses a password of their own."""
+"""The first login at a new station requires a new password."""
 
 from __future__ import annotations
 

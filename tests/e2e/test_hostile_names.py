@@ -1,4 +1,4 @@
-"""What people have written is shown as they wrote it, whatever it would be to a browser.
+"""Texts of people are shown as text, whatever markup they contain.
 
 The station is played and sends no content policy: nothing but the page's own care keeps a name from
 becoming an element.

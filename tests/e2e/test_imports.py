@@ -1,4 +1,4 @@
-"""What was brought into an incident: on the plan at its time, and in a list that can be changed."""
+"""Imported files of an incident: on the plan at their time, and in a list that can be changed."""
 
 from __future__ import annotations
 

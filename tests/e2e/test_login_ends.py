@@ -1,4 +1,4 @@
-"""A login that ends: what was being done waits for the same person, and for nobody else."""
+"""An ended login: the open work waits for the same user, and for no other."""
 
 from __future__ import annotations
 

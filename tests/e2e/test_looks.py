@@ -1,4 +1,4 @@
-"""How the console looks on every kind of screen, in every state, with a station that is played."""
+"""Appearance of the console on every kind of screen, in every state, with a simulated station."""
 
 from __future__ import annotations
 

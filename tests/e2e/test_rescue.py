@@ -1,4 +1,4 @@
-"""Ways to who is down, in front of a real station: named, drawn and sent in two presses."""
+"""Routes to a member who is down, at a station: named, drawn and sent in two presses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The roll call: nobody who is in danger is ticked off without a word."""
+"""The roll call: a member in danger is confirmed only after a question."""
 
 from __future__ import annotations
 

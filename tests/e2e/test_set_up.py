@@ -1,4 +1,4 @@
-"""Set-up at the vehicle, on a real station: one story in the order of the tests.
+"""Set-up at the vehicle, on a station: one story in the order of the tests.
 
 The number of presses is part of it: who sets up has a minute.  A press is a click on the page; to
 choose a file counts as one, to write does not.

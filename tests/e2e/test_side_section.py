@@ -1,4 +1,4 @@
-"""The side section: everybody by height, at the keyboard, read aloud, in every theme and size."""
+"""The side section: all people by height, by keyboard, read aloud, in every theme and size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The site: a place or a plan that is there is replaced only by who has said so."""
+"""The site dialog: an existing place or plan is replaced only after a confirmation."""
 
 from __future__ import annotations
 

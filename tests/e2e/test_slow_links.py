@@ -1,4 +1,4 @@
-"""What a dialog shows while the station has not answered yet, and once it is there again."""
+"""Dialogs while the station has not answered yet, and once it is there again."""
 
 from __future__ import annotations
 

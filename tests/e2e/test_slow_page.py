@@ -1,4 +1,4 @@
-"""A page whose processor is slow: it tells the station what it has shown, and shows the newest."""
+"""A page on a slow processor confirms what it has shown, and shows the newest state."""
 
 from __future__ import annotations
 

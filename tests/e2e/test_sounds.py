@@ -1,4 +1,4 @@
-"""What is heard of alarms, and when the browser keeps it silent."""
+"""Sounds of alarms, and a browser that blocks them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""The console when its station dies: it goes to the other one, where the same people go on."""
+"""The console when its station dies: it changes to the other one, and the same users continue
+there.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A card, panel, dialog or message that fails is named on the screen, and takes none along."""
+"""A failing card, panel, dialog or message is named on the screen, and affects no other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way of who is in danger or chosen is drawn from its beginning, of others for minutes."""
+"""The trail of a person in danger or chosen is drawn from its beginning, of others for minutes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A power cut of the station at the very instant at which it tells a unit what it may forget."""
+"""A power cut of the station at the instant of an acknowledgement to a unit's journal loses
+nothing.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A real station and a real unit over a bad radio link: nothing is lost and nothing comes twice,
-and a link that is gone is told, as is one that is back.
+"""A station and a unit over a bad radio link: nothing is lost or doubled, and a lost and a
+restored link are reported.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Two machines under one name are told from one that was started again, and from old messages."""
+"""Duplicate devices under one name are distinguished from restarts and from old messages."""
 
 from __future__ import annotations
 

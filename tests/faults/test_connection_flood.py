@@ -1,4 +1,4 @@
-"""Somebody without a certificate opens connections to the bus, and units link all the same."""
+"""A flood of connections without a certificate does not keep units from linking."""
 
 from __future__ import annotations
 

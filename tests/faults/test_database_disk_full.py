@@ -1,6 +1,4 @@
-"""A database whose disk takes nothing: it opens, takes changes in memory, and has them in the file
-when there is room.
-"""
+"""A database on a full disk opens, takes changes in memory, and writes them when there is room."""
 
 from __future__ import annotations
 

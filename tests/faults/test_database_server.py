@@ -1,4 +1,6 @@
-"""A station whose database server is killed or frozen goes on, says so, and lacks nothing after."""
+"""A station whose database server is killed or frozen continues, reports it, and lacks nothing
+after.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole stations and a department in networks of their own: cut off, killed, refused.
+"""Stations and a department in networks of their own: cut off, killed, refused.
 
 Nothing is lost and nothing comes twice; what was sent and how long it took is printed.
 """

@@ -1,4 +1,4 @@
-"""Recordings with what real sensors do wrong go through a whole agent: flagged, never fatal."""
+"""Recordings with faults of real sensors pass a whole agent: flagged, never fatal."""
 
 from __future__ import annotations
 

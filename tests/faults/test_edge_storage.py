@@ -1,4 +1,4 @@
-"""A disk that is full or hangs stops no message, is told, and what it missed is written later."""
+"""A full or hanging disk of a unit delays no message, is reported, and is written later."""
 
 from __future__ import annotations
 

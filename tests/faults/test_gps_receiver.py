@@ -1,4 +1,6 @@
-"""A satellite receiver that is off, cut, noisy, stuck or set wrongly: told, and survived."""
+"""A satellite receiver that is off, cut, noisy, stuck or set wrongly is reported, and the agent
+continues.
+"""
 
 from __future__ import annotations
 

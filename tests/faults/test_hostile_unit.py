@@ -1,4 +1,4 @@
-"""An enrolled unit that runs wild, beside others at a real station: they lose nothing by it."""
+"""An enrolled unit that floods a station costs the other units nothing."""
 
 from __future__ import annotations
 

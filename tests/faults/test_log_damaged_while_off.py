@@ -1,4 +1,6 @@
-"""What a disk lost of the log while the station was off is said, and comes from journals again."""
+"""Records that a disk lost while the station was off are reported, and fetched from journals
+again.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A disk that takes nothing: the writer goes on, says so, and loses nothing that it accepted."""
+"""A writer on a full disk continues, reports it, and loses no accepted record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Strangers who try passwords or hold connections keep nobody from evacuating, looking or logging
+"""Clients that try passwords or hold connections keep no user from evacuating, viewing or logging
 in.
 """
 

@@ -1,4 +1,4 @@
-"""A unit that is out of reach for ten minutes: nothing that it says meanwhile is lost."""
+"""A unit without contact for ten minutes loses no message."""
 
 from __future__ import annotations
 

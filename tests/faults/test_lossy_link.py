@@ -1,4 +1,4 @@
-"""The bad links of the other tests are as bad as they say."""
+"""The bad links of the other tests have their stated losses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An agent and a station that are killed by turns: in the end the log has every message once."""
+"""An agent and a station that are killed in turn: in the end the log has every message once."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Thirty photographs of 50 megapixels at once, pictures that are larger than they look, and uploads
-that hardly come.
-"""
+"""Thirty photographs of 50 megapixels at once, decompression bombs, and slow uploads."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A unit that only posts samples, over a station that is killed: it moves on the map, and of what
-was acknowledged the log has everything once.
+"""A unit that only posts samples, over a station that is killed: it moves on the map, and the log
+has every acknowledged sample once.
 """
 
 from __future__ import annotations

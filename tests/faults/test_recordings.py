@@ -1,4 +1,4 @@
-"""A recording reaches the station whole, whoever is ended on the way and whatever is in the way."""
+"""A recording reaches the station complete over kills of every process and every other fault."""
 
 from __future__ import annotations
 

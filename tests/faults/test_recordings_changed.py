@@ -1,4 +1,4 @@
-"""A recording that is no longer what it was: files that the unit mended, gave up, or has anew."""
+"""A recording that changes during its pull: files that the unit repaired, deleted, or rewrote."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A unit that began in 1970, or in 2100, finds its recording by station time all the same."""
+"""A unit whose clock began in 1970, or in 2100, finds its recording by station time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of a recording is asked for at a time, and what a link or a bus that fails costs."""
+"""Pieces of a recording's pull: their size, and the cost of a failing link or bus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recordings that people ask for: by turns, over restarts, until they are there or stopped."""
+"""Queue of pulls of recordings: in turn, over restarts, until they are complete or stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is refused of a recording: other files, senseless questions, a second pull at once."""
+"""Refusals of a recording's pull: other files, invalid requests, a second pull at once."""
 
 from __future__ import annotations
 

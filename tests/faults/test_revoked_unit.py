@@ -1,5 +1,5 @@
-"""A unit is revoked while it speaks, and a program while it listens: nothing more comes of the one
-and to the other, and others lose nothing.
+"""A unit is revoked while it publishes, and a program while it subscribes: neither sends or
+receives any more, and others lose nothing.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Two routers in processes of their own that open again whenever they like: linked each time.
+"""Two routers in processes of their own that reopen at any time link again each time.
 
 Enrolling somebody has both open again at nearly the same moment, and so does a power cut.
 """

@@ -1,4 +1,4 @@
-"""A station that was away for an hour, in which a real journal was filled, has all of it soon."""
+"""A station that was away for an hour fetches a full journal of that time soon."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real station whose clock is set by a day while it runs, and is wrong when it starts."""
+"""A station whose clock is set by a day while it runs, and is wrong when it starts."""
 
 from __future__ import annotations
 

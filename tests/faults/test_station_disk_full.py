@@ -1,5 +1,5 @@
-"""A station that starts on a disk that takes nothing: live, with people who log in, and whole again
-when there is room.
+"""A station that starts on a full disk is live, lets users log in, and is complete when there is
+room.
 """
 
 from __future__ import annotations

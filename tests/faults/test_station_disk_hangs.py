@@ -1,4 +1,6 @@
-"""A station whose disk hangs shows and commands people all the same, says so, and loses nothing."""
+"""A station whose disk hangs shows and commands people all the same, reports it, and loses
+nothing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a station does when its own parts fail: it says so, and tracking goes on."""
+"""A station whose own parts fail reports it, and tracking continues."""
 
 from __future__ import annotations
 

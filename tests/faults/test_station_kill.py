@@ -1,4 +1,4 @@
-"""A station that is killed outright, again and again: what it had said or written stays."""
+"""A station that is killed again and again keeps every record that it acknowledged or wrote."""
 
 from __future__ import annotations
 

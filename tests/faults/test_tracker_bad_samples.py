@@ -1,4 +1,4 @@
-"""Samples that cannot be: impossible values, spikes, repeats; flagged, and never fatal."""
+"""Impossible values, spikes and repeats in samples are flagged, and never fatal."""
 
 from __future__ import annotations
 

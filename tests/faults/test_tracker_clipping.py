@@ -1,4 +1,4 @@
-"""Sensors that clip, told or untold: found, flagged and doubted."""
+"""Sensors that clip, declared or not: found, flagged and doubted."""
 
 from __future__ import annotations
 

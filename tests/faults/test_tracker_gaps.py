@@ -1,4 +1,4 @@
-"""Samples that are missing and stamps that jump: a short hole is bridged, a long one doubted."""
+"""Missing samples and jumps of timestamps: a short gap is bridged, a long one doubted."""
 
 from __future__ import annotations
 

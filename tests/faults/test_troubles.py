@@ -1,4 +1,4 @@
-"""A real station and a real unit that are killed, doubled or out of disk: nothing is lost."""
+"""A station and a unit that are killed, doubled or out of disk space lose nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two real stations and real units: one dies and comes back, and the cable between them is cut."""
+"""Pair of stations with units: one dies and comes back, and the cable between them is cut."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Whom one of two real stations shut out while the other was off, or could not be heard, is out at
-both, whichever leads by then.
+"""A revocation at one station of a pair while the other was off or cut off holds at both,
+whichever leads.
 """
 
 from __future__ import annotations

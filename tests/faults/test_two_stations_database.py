@@ -1,5 +1,5 @@
-"""One of two real stations loses its database while it is off: its users, people and tokens come
-back from the other one, whichever leads.
+"""A station of a pair that loses its database while off gets users, people and tokens back from
+the other, whichever leads.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Somebody is forgotten at one of two real stations: no byte is left at either of them."""
+"""Erasing a person at one station of a pair removes every byte at both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""One holder leaves messages unfinished at both of two stations, which go on copying plans."""
+"""A client that leaves messages unfinished at both stations of a pair does not stop them copying
+plans.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real unit whose clock is set by a day while it runs: nothing is lost, doubled or reordered."""
+"""A unit whose clock is set by a day while it runs: nothing is lost, doubled or reordered."""
 
 from __future__ import annotations
 

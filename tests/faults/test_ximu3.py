@@ -1,4 +1,6 @@
-"""An x-IMU3 that is off, out of reach, cut, noisy or set wrongly: told, and survived."""
+"""An x-IMU3 that is off, out of range, cut, noisy or set wrongly is reported, and the agent
+continues.
+"""
 
 from __future__ import annotations
 

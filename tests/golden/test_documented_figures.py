@@ -1,4 +1,4 @@
-"""What the documents state of the trackers is what a run gives."""
+"""Figures of the trackers in the documents equal those of a run."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A data folder of an older version: it opens, replays to the same decisions, is queried, and a
-person in it is forgotten.
+"""A data folder of an older version opens, replays to the same decisions, is queried, and a person
+in it is erased.
 """
 
 from __future__ import annotations

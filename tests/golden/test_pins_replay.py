@@ -1,4 +1,4 @@
-"""A replay pins as the live station did, to the last bit."""
+"""A replay solves pins as the live station did, to the last bit."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What a replay plays from the log is what deciding again shows, and what was shown live: every
-field that a console has, at every second.
+"""A replay of recorded console messages equals a replay that decides again, and the live state:
+every field of a console at every second.
 """
 
 from __future__ import annotations

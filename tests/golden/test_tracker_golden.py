@@ -1,4 +1,4 @@
-"""Every registered tracker walks recorded trials as it did when somebody last looked."""
+"""Every registered tracker gives the committed results on recorded trials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The roll call by way of the API: who is on duty, who is overdue, and who may tick off."""
+"""The roll call over the API: members on duty, overdue ones, and rights to confirm."""
 
 from __future__ import annotations
 

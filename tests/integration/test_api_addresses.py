@@ -1,4 +1,4 @@
-"""What an address takes: its parameters and its methods, on every route alike."""
+"""Addresses of the API: parameters and methods, the same on every route."""
 
 from __future__ import annotations
 

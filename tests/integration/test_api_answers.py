@@ -1,6 +1,4 @@
-"""An action is answered when it is decided, whatever the database does; who reads the database
-afterwards finds it there.
-"""
+"""Answers of actions do not wait for the database; later queries find the action there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A picture of the ground: given by an administrator, written anew, and laid on the Earth."""
+"""A picture of the ground: uploaded by an administrator, re-encoded, and placed on the Earth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is sent: how much of it, as what, and what is said of what is no good."""
+"""Request bodies: sizes, media types, and the errors of invalid ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Closing an incident over open alarms or people inside, which nobody does by accident."""
+"""Closing an incident with open alarms or people inside needs a confirmation."""
 
 from __future__ import annotations
 

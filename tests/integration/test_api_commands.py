@@ -1,4 +1,4 @@
-"""Commands by way of the API: who may send what, and what is said of it."""
+"""Commands over the API: rights and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The OpenAPI document: what a client is made from."""
+"""The OpenAPI document, from which clients are generated."""
 
 from __future__ import annotations
 

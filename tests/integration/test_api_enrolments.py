@@ -1,4 +1,4 @@
-"""Enrolments made in the console: for whom, over which way, once, and entered in the audit."""
+"""Enrolments over the API: rights, secure connections, one delivery, and the audit."""
 
 from __future__ import annotations
 

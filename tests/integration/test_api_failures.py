@@ -1,4 +1,4 @@
-"""What the station cannot do is told to who asked, and stands in its log."""
+"""Failures of the station are reported to the client, and logged."""
 
 from __future__ import annotations
 

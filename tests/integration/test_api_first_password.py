@@ -1,4 +1,4 @@
-"""The password that a station generated at its first start is good for one thing: another one."""
+"""The generated first password allows only the choice of another one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How often passwords can be tried, and what a try tells."""
+"""Limits of login attempts, and their answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A request that had no answer is sent again with its key: it is done once, and answered alike."""
+"""A repeated request with its key is done once, and answered the same."""
 
 from __future__ import annotations
 

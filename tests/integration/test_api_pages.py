@@ -1,4 +1,4 @@
-"""Lists that grow with every incident come page by page, and the pages have everything once."""
+"""Growing lists come in pages, which have every entry once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""People of a CSV file over the API: all of them or nobody, and again without harm."""
+"""Import of people from a CSV file over the API: all or none, and repeatable."""
 
 from __future__ import annotations
 

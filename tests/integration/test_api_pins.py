@@ -1,4 +1,4 @@
-"""Pins and beacons by way of the API: set, moved, removed, refused, and who may."""
+"""Pins and beacons over the API: set, moved, removed, refused, and rights."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Radio audio over the API: what there is, a window of it in ranges, and who may hear it."""
+"""Radio audio over the API: list, window in ranges, and rights."""
 
 from __future__ import annotations
 

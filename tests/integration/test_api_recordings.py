@@ -1,4 +1,4 @@
-"""Recordings are pulled by who may, and their progress can be seen."""
+"""Pulls of recordings over the API: rights and progress."""
 
 from __future__ import annotations
 

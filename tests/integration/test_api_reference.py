@@ -1,4 +1,4 @@
-"""The reference barometer by way of the API: set, taken away, refused, and who may."""
+"""The reference barometer over the API: set, removed, refused, and rights."""
 
 from __future__ import annotations
 

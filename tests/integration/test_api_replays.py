@@ -1,4 +1,4 @@
-"""Whose replay it is: who may move it, and who may end it."""
+"""Replays over the API: owners, and rights to move and to end them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every route of the API: who may, with which token, and that what changes something is audited."""
+"""Every route of the API: rights, token scopes, and the audit of every change."""
 
 from __future__ import annotations
 

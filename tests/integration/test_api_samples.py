@@ -1,4 +1,4 @@
-"""Samples that a unit posts: its token, the two forms, what is refused, and what is kept once."""
+"""Posted samples of a unit: token, both forms, refusals, and storage without duplicates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The API keeps what its OpenAPI document says, whatever is sent (schemathesis)."""
+"""The API conforms to its OpenAPI document for any request (schemathesis)."""
 
 from __future__ import annotations
 

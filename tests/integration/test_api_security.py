@@ -1,4 +1,4 @@
-"""Who may do what, and from where."""
+"""Rights of users, and origins of requests."""
 
 from __future__ import annotations
 

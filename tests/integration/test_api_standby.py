@@ -1,4 +1,4 @@
-"""The API of one of two stations."""
+"""The API of a station of a pair."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The timeline of a unit by way of the API, from a log and a database in a folder."""
+"""The timeline of a unit over the API, from a log and a database in a folder."""
 
 from __future__ import annotations
 

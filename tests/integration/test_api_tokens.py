@@ -1,4 +1,4 @@
-"""Programs' tokens: what each may do, how long, and whose it is."""
+"""Tokens of programs: scopes, expiry, and owner."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Users: who can be made, and what a new password or another role ends."""
+"""Users: valid accounts, and sessions that end with a new password or role."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Incidents in an archive: copied to a real S3 server and to a disk, found out about, and shown."""
+"""Incidents in an archive: copied to an S3 server and to a disk, listed, and shown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A backup of a running station, put where another station starts: people go on from there."""
+"""A backup of a running station, restored for another station: people continue from there."""
 
 from __future__ import annotations
 

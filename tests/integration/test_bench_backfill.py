@@ -1,4 +1,4 @@
-"""The measurement of fetching measures: a short backlog arrives whole beside live data."""
+"""``muster bench backfill``: a short backlog arrives complete beside live data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The measurement of the bus measures: a small run through a real station loses nothing."""
+"""``muster bench bus``: a small run through a station loses nothing."""
 
 from __future__ import annotations
 

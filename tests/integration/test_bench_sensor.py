@@ -1,4 +1,4 @@
-"""``muster bench sensor`` measures an agent that takes every sample; how fast is not asserted."""
+"""``muster bench sensor`` measures an agent that takes every sample; targets are not asserted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The measurement of the station measures: every message is stepped, and all parts are counted."""
+"""``muster bench station``: every message is stepped, and all parts are counted."""
 
 from __future__ import annotations
 

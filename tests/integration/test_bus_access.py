@@ -1,4 +1,4 @@
-"""Who may do what on the bus, over real Zenoh: access rules and revocation."""
+"""Rights on the bus, over Zenoh: access rules and revocation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is let in to the bus at all, over real Zenoh: certificates of every kind but the right."""
+"""Connections to the bus, over Zenoh: every certificate but the right one is refused."""
 
 from __future__ import annotations
 

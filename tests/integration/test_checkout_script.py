@@ -1,4 +1,4 @@
-"""The ``muster`` of a checkout makes its own environment, and mends what is left of one."""
+"""The ``muster`` of a checkout makes its own environment, and repairs a partial one."""
 
 from __future__ import annotations
 

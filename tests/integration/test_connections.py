@@ -1,4 +1,4 @@
-"""Connections of whoever asks nothing: they end, and take nobody else's."""
+"""Idle connections end, and take no place of others."""
 
 from __future__ import annotations
 

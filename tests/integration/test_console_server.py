@@ -1,4 +1,4 @@
-"""The console's server as it begins and ends."""
+"""Start and end of the console's server."""
 
 from __future__ import annotations
 

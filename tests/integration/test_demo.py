@@ -1,4 +1,4 @@
-"""The demo as a script runs it, and as a person ends it."""
+"""The demo run by a script, and ended by a person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An enrolled agent over mutual TLS and access rules, and one that does not belong."""
+"""An enrolled agent over mutual TLS and access rules, and a foreign one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An agent with a calibration: what its black box keeps."""
+"""An agent with a calibration: content of its black box."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``muster edge check`` as a person and as a script runs it, beside a secured station."""
+"""``muster edge check`` run by a person and by a script, beside a secured station."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a sensor's gains may be off goes from settings or source into what a unit states."""
+"""Stated gain errors of a sensor pass from settings or source into a unit's uncertainty."""
 
 from __future__ import annotations
 

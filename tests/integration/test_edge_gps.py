@@ -1,4 +1,4 @@
-"""A pretended sensor and a pretended satellite receiver at an agent: the station fuses both."""
+"""An emulated sensor and an emulated satellite receiver at an agent: the station fuses both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An agent as a person starts it, on an emulated machine with devices of the kernel."""
+"""An agent started as by a person, on an emulated machine with devices of the kernel."""
 
 from __future__ import annotations
 

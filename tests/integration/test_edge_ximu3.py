@@ -1,4 +1,4 @@
-"""An agent with an x-IMU3, as a process, before the sensor is there and after it went."""
+"""An agent with an x-IMU3, as a process, before the sensor is connected and after its removal."""
 
 from __future__ import annotations
 

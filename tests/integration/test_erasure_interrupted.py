@@ -1,4 +1,4 @@
-"""Forgetting that is cut short anywhere and gone on with, and what it says of a damaged log."""
+"""An erasure that is interrupted anywhere and continued, and its report of a damaged log."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Erasing one of two incidents that were open together, with people moved between them: nothing is
-left of it, and of the other one everything, as it was.
+"""Erasure of one of two incidents that were open together, with people moved between them: nothing
+of it is left, and all of the other.
 """
 
 from __future__ import annotations

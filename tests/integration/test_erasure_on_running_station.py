@@ -1,4 +1,4 @@
-"""Forgetting beside a running station: what it holds in memory, saves and pulls goes too."""
+"""Erasure beside a running station: memory, checkpoints and pulls are erased too."""
 
 from __future__ import annotations
 

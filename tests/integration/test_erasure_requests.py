@@ -1,4 +1,4 @@
-"""Forgetting that is asked for over the API: by whom, by which name, and when not yet."""
+"""Erasures requested over the API: rights, names, and obstacles."""
 
 from __future__ import annotations
 

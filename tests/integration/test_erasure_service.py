@@ -1,4 +1,4 @@
-"""Forgetting a person or an incident: no byte is left of them, and the others replay as before."""
+"""Erasure of a person or an incident leaves no byte, and other incidents replay unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``muster base export`` of a folder, of a log alone, and what other programs read of the files."""
+"""``muster base export`` of a folder and of a log alone, read by other programs."""
 
 from __future__ import annotations
 

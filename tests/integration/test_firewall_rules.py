@@ -1,4 +1,4 @@
-"""The firewall rules that are shipped: the kernel takes them, and takes them again."""
+"""The shipped firewall rules: the kernel accepts them, also repeatedly."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A client that a generator makes of the OpenAPI document does the common things at a station, and
-reads its problems.
+"""A client generated from the OpenAPI document does the common tasks at a station, and reads its
+problems.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An incident as somebody else gave it: of another machine, of its log alone, or not whole."""
+"""An incident from another machine: a whole folder, its log alone, or parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The daemon itself, where it is installed, with a pretended receiver on a serial port."""
+"""gpsd itself, where it is installed, with an emulated receiver on a serial port."""
 
 from __future__ import annotations
 

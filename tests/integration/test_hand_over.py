@@ -1,4 +1,4 @@
-"""What is handed over is whole: with files that were brought in, and by choice with the radio."""
+"""A handed-over incident is complete: with imported files, and optionally with the radio."""
 
 from __future__ import annotations
 

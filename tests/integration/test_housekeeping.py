@@ -1,4 +1,4 @@
-"""A station serves on when its housekeeping fails, and ends at a signal."""
+"""A station continues when its housekeeping fails, and ends at a signal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files from elsewhere in an incident: over the API, by the command, and what becomes of them."""
+"""Imported files in an incident: over the API, by the command, and their later changes."""
 
 from __future__ import annotations
 

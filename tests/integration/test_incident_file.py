@@ -1,4 +1,4 @@
-"""An incident as one file that stands alone: with the plain reader of its format, and here."""
+"""An incident as one self-contained file: read by the plain reader of its format, and here."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``muster base report`` on what somebody gave: a log alone, damaged, open, of erased people."""
+"""``muster base report`` on a log alone, a damaged or open one, and one with erased people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What systemd hears of a station and of an agent that run, as processes."""
+"""Notifications of a station and of an agent to systemd, as processes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plan as large as may be sent is laid while people walk: what they do is shown all the while."""
+"""The largest plan is loaded while people walk, and their state is shown throughout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why there is no link, in one sentence each, against a real router."""
+"""Reasons of a missing link, in one sentence each, against a router."""
 
 from __future__ import annotations
 

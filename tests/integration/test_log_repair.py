@@ -1,4 +1,4 @@
-"""A log with flipped bits is found, said, and mended from the other station's."""
+"""A log with flipped bits is found, reported, and repaired from the other station's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A unit's program that has started again and again: each message is in the log once."""
+"""A unit's program that has restarted again and again: each message is in the log once."""
 
 from __future__ import annotations
 

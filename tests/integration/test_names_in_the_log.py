@@ -1,4 +1,4 @@
-"""No name of a person is in what a station logs, whatever was entered; whoever looks sees names."""
+"""A station's log holds no name of a person, whatever was entered; displays show names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of an incident afterwards, worked out in a process of its own."""
+"""Post-processing of an incident in a process of its own."""
 
 from __future__ import annotations
 

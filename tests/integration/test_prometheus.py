@@ -1,4 +1,4 @@
-"""Prometheus itself reads a station's metrics, and the alert rules that are shipped."""
+"""Prometheus reads a station's metrics, and the shipped alert rules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A radio channel is recorded at the right time, and goes on whatever its source does."""
+"""A radio channel is recorded at the right time, and continues over faults of its source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""While a station reads its log, its console shows what was last stored, and how far it is."""
+"""While a station reads its log, its console shows the last stored state and the progress."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``muster base rehearse`` on a log alone: against the alarms of a station that really had those
+"""``muster base rehearse`` on a log alone, against the alarms of a station with those
 thresholds.
 """
 

@@ -1,4 +1,4 @@
-"""``muster base rerun`` on a log alone, with black boxes that somebody brought."""
+"""``muster base rerun`` on a log alone, with separate black boxes."""
 
 from __future__ import annotations
 

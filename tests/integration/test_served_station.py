@@ -1,4 +1,4 @@
-"""``muster base serve`` as it runs: real process, bus, folder and signals."""
+"""``muster base serve`` as a process: bus, folder and signals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A department's own thresholds, in the settings of a station that runs."""
+"""A department's own thresholds, in the settings of a running station."""
 
 from __future__ import annotations
 

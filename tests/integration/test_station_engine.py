@@ -1,4 +1,4 @@
-"""The live drive with the real feed and recorder: record, step, tell, survive."""
+"""The live engine with the feed and the recorder: record, step, publish, survive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the live drive makes of links that come and go, by the tokens that units hold."""
+"""Links that come and go at the live engine, by the tokens of units."""
 
 from __future__ import annotations
 

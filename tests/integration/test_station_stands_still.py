@@ -1,4 +1,4 @@
-"""A station that nobody let run for a while: who is there is heard before time goes on."""
+"""A station that was suspended for a while receives waiting messages before time advances."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A station's folder in which the parts are not of one kin: said in a sentence, nothing mixed."""
+"""A station's folder with parts of different stations: reported in a sentence, nothing mixed."""
 
 from __future__ import annotations
 

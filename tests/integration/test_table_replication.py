@@ -1,4 +1,4 @@
-"""What is in no log is the same at both stations."""
+"""Tables without a log are the same at both stations."""
 
 from __future__ import annotations
 

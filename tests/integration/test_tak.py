@@ -1,4 +1,4 @@
-"""A station with TAK beside it: a real server over TCP and TLS, and a multicast group."""
+"""A station with TAK: a server over TCP and TLS, and a multicast group."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit's journal holds and nobody can read is in the log once, and is not fetched again."""
+"""Unreadable messages of a unit's journal are in the log once, and are not fetched again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``body`` states of long walks holds, wherever it is worn: ten minutes of a search."""
+"""Stated uncertainty of ``body`` on long walks, worn anywhere: ten minutes of a search."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A person who knows nothing but what the guide says, and does that, ends with a calibration."""
+"""A person who follows only the guide's instructions obtains a calibration."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fixes and positions that come late, against simulated walks with known truth."""
+"""Late fixes and positions, against simulated walks with known truth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fuser on the tracks of recorded walks, with satellite fixes cut in: the recipe is that of
+"""The fuser on tracks of recorded walks with simulated satellite fixes, made as in
 ``tests.bench.fusion.recorded_walks``.
 """
 

@@ -1,4 +1,4 @@
-"""Floors under weather, doors and fans: pressure that nobody climbed for moves nobody."""
+"""Floors under weather, doors and fans: a pressure change without a climb moves nobody."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A building that is learnt from everybody's paths helps everybody, and harms nobody elsewhere."""
+"""A building learnt from all paths improves all, and harms none elsewhere."""
 
 from __future__ import annotations
 

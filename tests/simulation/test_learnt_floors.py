@@ -1,4 +1,4 @@
-"""Floors that no plan tells: learnt from where people walk, shared, and learnt again."""
+"""Floors without a plan: learnt from level walks, shared, and learnt again."""
 
 from __future__ import annotations
 

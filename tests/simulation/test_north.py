@@ -1,4 +1,4 @@
-"""From a calibrated magnetometer on a foot to a path that lies right on the plan, without GPS."""
+"""A calibrated magnetometer on a foot aligns the path with the plan, without GPS."""
 
 from __future__ import annotations
 

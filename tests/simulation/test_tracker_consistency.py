@@ -1,4 +1,4 @@
-"""Stances that contradict the motion between them: the tracker states that its height is lost.
+"""Stances that contradict the motion between them: the tracker reports that its height is lost.
 
 Feet that are raised slowly are such a motion for a tracker that believes every stance.
 """

@@ -1,4 +1,4 @@
-"""Whoever crawls drags his foot, and it may glide evenly for a moment without standing."""
+"""A crawling wearer's foot is dragged, and may glide evenly for a moment without standing."""
 
 from __future__ import annotations
 

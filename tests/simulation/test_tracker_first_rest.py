@@ -1,4 +1,4 @@
-"""Who starts on the move with a gyroscope that is far off is told so, and put right by a rest."""
+"""A start on the move with a large gyroscope bias is reported, and corrected by a rest."""
 
 from __future__ import annotations
 

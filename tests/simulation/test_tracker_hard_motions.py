@@ -1,4 +1,4 @@
-"""Feet that are raised slowly, put down with care, or dragged: found, or the doubt is stated."""
+"""Feet that are raised slowly, put down with care, or dragged: found, or reported as doubtful."""
 
 from __future__ import annotations
 

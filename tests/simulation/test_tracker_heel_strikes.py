@@ -1,4 +1,4 @@
-"""Heel strikes that are over before the sensor's samples have followed them."""
+"""Heel strikes shorter than the response of the sensor."""
 
 from __future__ import annotations
 

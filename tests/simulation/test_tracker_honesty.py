@@ -1,4 +1,4 @@
-"""What is stated of simulated walks is true: by good sensors and by poor ones."""
+"""Stated uncertainty on simulated walks is true: by good sensors and by poor ones."""
 
 from __future__ import annotations
 

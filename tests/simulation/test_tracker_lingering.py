@@ -1,4 +1,4 @@
-"""Whoever stands about, kneels or sits for a while is found where he is, and gets up there."""
+"""A wearer who stands, kneels or sits for a while stays at the place, and gets up there."""
 
 from __future__ import annotations
 

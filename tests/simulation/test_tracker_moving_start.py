@@ -1,4 +1,4 @@
-"""A recording that begins in mid-swing: nobody stands before the foot has come to the ground."""
+"""A recording that begins in mid-swing has no stance before the foot is on the ground."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The default tracker on simulated walks, whose truth is known entirely."""
+"""The default tracker on simulated walks with known truth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The gyroscope's bias follows the sensor's temperature once two rests have told how."""
+"""The gyroscope's bias follows the sensor's temperature once two rests have shown the slope."""
 
 from __future__ import annotations
 

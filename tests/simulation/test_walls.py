@@ -1,4 +1,4 @@
-"""A plan's walls hold people: simulated incidents with and without the plan."""
+"""Walls of a plan constrain paths: simulated incidents with and without the plan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A recorded walk as an x-IMU3 would have said it is tracked to the path of the recording."""
+"""A recorded walk encoded as messages of an x-IMU3 is tracked to the path of the recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person types wrongly is answered with one sentence and exit code 2."""
+"""Wrong input on the command line is answered with one sentence and exit code 2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The in-memory bus: links that a test cuts, and an order of things that never changes."""
+"""The in-memory bus: links that a test cuts, and a fixed order of events."""
 
 from __future__ import annotations
 

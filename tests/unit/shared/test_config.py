@@ -1,4 +1,4 @@
-"""Configuration files: what is read, and what a person is told when something is wrong."""
+"""Configuration files: settings that are read, and errors for a person."""
 
 from __future__ import annotations
 

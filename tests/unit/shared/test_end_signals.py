@@ -1,4 +1,4 @@
-"""A program ends however often, and whenever, it is told to."""
+"""A program ends at any number of signals, at any time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signs and inverses of the one place that knows latitude, longitude and pressure."""
+"""Signs and inverses of the functions of latitude, longitude and pressure."""
 
 from __future__ import annotations
 

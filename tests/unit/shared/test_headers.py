@@ -1,4 +1,4 @@
-"""What every message begins with: who said it, which it is and when."""
+"""Header of every message: sender, sequence number and time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a command cannot write its file it says so before the work."""
+"""A command that cannot write its file reports it before its work."""
 
 from __future__ import annotations
 

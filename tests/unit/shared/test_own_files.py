@@ -1,4 +1,6 @@
-"""What root makes in a station's folder is the folder's owner's, as whom the station runs."""
+"""Files that root makes in a station's folder belong to the folder's owner, as whom the station
+runs.
+"""
 
 from __future__ import annotations
 

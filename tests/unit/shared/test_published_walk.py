@@ -1,4 +1,4 @@
-"""People of simulated incidents whose units track them: by way of what is published."""
+"""People of simulated incidents whose units track them, by published positions."""
 
 from __future__ import annotations
 

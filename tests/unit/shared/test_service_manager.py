@@ -1,4 +1,4 @@
-"""What is said to whoever keeps the program running."""
+"""Notifications to the service manager."""
 
 from __future__ import annotations
 

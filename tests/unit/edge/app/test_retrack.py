@@ -1,4 +1,4 @@
-"""A black box that is tracked again as its unit would have: settings and what is put together."""
+"""A black box tracked again as by its unit: settings and joined files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Announcements that somebody makes up: they cost a unit little, and its log less."""
+"""Forged announcements cost a unit little, and its log less."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a unit looks for its station: what it was enrolled with first, then what is announced."""
+"""Search of a unit for its station: the enrolled address first, then announced ones."""
 
 from __future__ import annotations
 

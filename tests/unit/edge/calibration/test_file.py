@@ -1,4 +1,4 @@
-"""A calibration's file: written, read, damaged, old and poor."""
+"""The file of a calibration: written, read, damaged, old and poor."""
 
 from __future__ import annotations
 

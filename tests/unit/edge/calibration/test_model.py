@@ -1,4 +1,4 @@
-"""Calibrations of simulated sensors with known errors find them, and take them out."""
+"""Calibrations of simulated sensors find their known errors, and remove them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What does not determine a calibration is refused, and the sentence says what is missing."""
+"""Insufficient data of a calibration is refused, and the sentence states what is missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the person who made a calibration reads at its end."""
+"""Report at the end of a calibration for its maker."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ellipsoids of known shape: their gain and centre are found, and how sure they are is told."""
+"""Ellipsoids of known shape: gain and centre are found, with their uncertainty."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each step of a calibration takes for enough, and what it asks for meanwhile."""
+"""Steps of a calibration: sufficient data, and requests meanwhile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit makes of its exchanges with the station: how far off its clock is, and how sure."""
+"""Offset of a unit's clock from its exchanges with the station, with its uncertainty."""
 
 from __future__ import annotations
 

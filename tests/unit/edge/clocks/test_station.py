@@ -1,4 +1,4 @@
-"""When a unit asks the station for the time, and what it makes of no answer."""
+"""Time requests of a unit to the station, and missing answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recorded time is laid on the unit's clock."""
+"""Mapping of recorded time to the unit's clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Notices are played by turns, the urgent ones at once, and an output that fails is reported."""
+"""Notices are played in turn, urgent ones at once, and a failing output is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit reads beside its inertial sensor is compared with what it should have."""
+"""Auxiliary sensors of a unit, compared with the expected ones."""
 
 from __future__ import annotations
 

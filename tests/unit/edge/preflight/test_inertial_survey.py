@@ -1,4 +1,4 @@
-"""Each weakness of an inertial sensor is found, and a sensor that is well has none."""
+"""Weaknesses of an inertial sensor are found, and a healthy sensor has none."""
 
 from __future__ import annotations
 

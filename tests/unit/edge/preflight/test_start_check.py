@@ -1,4 +1,4 @@
-"""The check that a unit makes at its start, which disturbs nothing."""
+"""The check of a unit at its start, which disturbs nothing."""
 
 from __future__ import annotations
 

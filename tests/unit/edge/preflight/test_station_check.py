@@ -1,4 +1,4 @@
-"""Link and clock, as the check finds them."""
+"""Link and clock in the start check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an agent hears of the unit that it tracks for, and asks of its journal."""
+"""Messages that a tracking agent receives from its unit, and requests to its journal."""
 
 from __future__ import annotations
 

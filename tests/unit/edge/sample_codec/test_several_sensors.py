@@ -1,4 +1,4 @@
-"""Samples of several sensors of one unit stay apart on the wire, and old messages have one."""
+"""Samples of several sensors of one unit stay separate in messages, and old messages have one."""
 
 from __future__ import annotations
 

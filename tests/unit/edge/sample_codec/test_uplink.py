@@ -1,4 +1,4 @@
-"""Samples that are sent for somebody else to track with: each once, at the channel's rate."""
+"""Samples sent for tracking elsewhere: each once, at the channel's rate."""
 
 from __future__ import annotations
 

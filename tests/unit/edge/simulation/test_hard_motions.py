@@ -1,4 +1,4 @@
-"""Hard motions are what they promise: pauses in mid-air, slides, short stances, clipped samples."""
+"""Hard motions have their features: pauses in mid-air, slides, short stances, clipped samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Simulated inertial sensors: each error does what it says, and nothing else."""
+"""Simulated inertial sensors: each error has its own effect, and no other."""
 
 from __future__ import annotations
 

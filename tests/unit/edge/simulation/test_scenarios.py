@@ -1,4 +1,4 @@
-"""The built-in scenarios and what a scenario file may say."""
+"""The built-in scenarios and the content of a scenario file."""
 
 from __future__ import annotations
 

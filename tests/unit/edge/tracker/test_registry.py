@@ -1,4 +1,4 @@
-"""Which sensors of a person fit a tracker of several sensors."""
+"""Sensors of a person that fit a tracker of several sensors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Input devices: which one is meant, what cannot be read and why, and what the kernel drops."""
+"""Input devices: the selected one, unreadable ones with the reason, and events that the kernel
+drops.
+"""
 
 from __future__ import annotations
 

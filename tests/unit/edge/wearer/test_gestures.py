@@ -1,4 +1,4 @@
-"""Gestures: what a press means, whatever the contact does and however often it is looked at."""
+"""Gestures: meaning of presses, with any bounce of the contact and any polling rate."""
 
 from __future__ import annotations
 

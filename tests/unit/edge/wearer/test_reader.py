@@ -1,4 +1,4 @@
-"""The reader: gestures as they come, a button that goes and comes back, and each fault once."""
+"""The reader: gestures in order, a button that is removed and returns, and each fault once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a disk refuses, cuts short or drops is written again, in its place."""
+"""Writes that a disk refuses, cuts short or drops are repeated, in their place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What any other reader of MCAP sees of the log: keys, schemas, times, and topics of its own."""
+"""The log in another reader of MCAP: keys, schemas, times, and topics of its own."""
 
 from __future__ import annotations
 

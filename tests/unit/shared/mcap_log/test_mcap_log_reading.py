@@ -1,4 +1,4 @@
-"""Reading the log: what is being written, windows of time, and what is not there."""
+"""Reading the log: during writing, windows of time, and missing parts."""
 
 from __future__ import annotations
 

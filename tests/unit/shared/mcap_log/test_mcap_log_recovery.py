@@ -1,4 +1,4 @@
-"""Segments that a crash left torn are ended in order, and what that cost is said."""
+"""Segments torn by a crash are closed in order, and the loss is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A segment is written anew with other records in place of some."""
+"""A segment is rewritten with other records in place of some."""
 
 from __future__ import annotations
 

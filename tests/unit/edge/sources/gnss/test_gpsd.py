@@ -1,4 +1,4 @@
-"""What gpsd says, made into fixes."""
+"""Reports of gpsd as fixes."""
 
 from __future__ import annotations
 

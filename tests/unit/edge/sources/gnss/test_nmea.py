@@ -1,4 +1,4 @@
-"""What receivers say in NMEA 0183, put together into fixes."""
+"""NMEA 0183 sentences of receivers, merged into fixes."""
 
 from __future__ import annotations
 

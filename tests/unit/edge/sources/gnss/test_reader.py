@@ -1,4 +1,4 @@
-"""What a reader of satellites makes of lines that are lost, silent, said twice or gone."""
+"""The reader of satellite receivers, with lost, silent, repeated and removed lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Times of captured samples, and what a monitor says of them."""
+"""Times of captured samples, and the monitor's reports of them."""
 
 from __future__ import annotations
 

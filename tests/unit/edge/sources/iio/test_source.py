@@ -1,4 +1,4 @@
-"""A source of Industrial I/O beside emulated devices: what it gives, and what it says is wrong."""
+"""A source of Industrial I/O with emulated devices: its data and its faults."""
 
 from __future__ import annotations
 

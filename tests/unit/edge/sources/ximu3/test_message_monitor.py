@@ -1,4 +1,4 @@
-"""What a person hears of a line on which an x-IMU3 loses some of what it says."""
+"""Reports of a line on which an x-IMU3 loses messages."""
 
 from __future__ import annotations
 

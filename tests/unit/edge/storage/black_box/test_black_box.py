@@ -1,4 +1,4 @@
-"""The black box gives back what the tracker saw, whole or torn, within its share of the disk."""
+"""The black box returns the tracker's samples, complete or torn, within its share of the disk."""
 
 from __future__ import annotations
 

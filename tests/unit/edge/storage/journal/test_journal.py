@@ -1,4 +1,4 @@
-"""The journal keeps what it was given, in order, and makes room by worth."""
+"""The journal keeps its messages in order, and evicts by priority."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The journal's answers account for every number that was asked for."""
+"""The journal's answers account for every requested number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is written is on the disk, or waits in memory for one that refuses or hangs."""
+"""Messages are on the disk, or wait in memory for one that refuses or hangs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tracker of the body makes of even steps, of standing, and of what is no walk."""
+"""The body's tracker on even steps, at rest, and on motion that is no walk."""
 
 from __future__ import annotations
 

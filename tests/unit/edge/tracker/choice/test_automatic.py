@@ -1,4 +1,4 @@
-"""A tracker that chooses itself: of the right tracker, and nothing of the path lost."""
+"""A tracker that chooses itself: the right tracker, and no part of the path lost."""
 
 from __future__ import annotations
 

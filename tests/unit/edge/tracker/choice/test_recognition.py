@@ -1,4 +1,4 @@
-"""Where a sensor is worn, by how it moves."""
+"""Place of a sensor on the body, recognised from its motion."""
 
 from __future__ import annotations
 

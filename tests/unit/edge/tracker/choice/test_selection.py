@@ -1,4 +1,4 @@
-"""Which tracker the sensors of a person get, and what is said where they do not fit."""
+"""Selection of a tracker for the sensors of a person, and errors where none fits."""
 
 from __future__ import annotations
 

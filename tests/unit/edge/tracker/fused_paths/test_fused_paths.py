@@ -1,4 +1,4 @@
-"""Two paths of one person become one: headings, a path that fails, and silence."""
+"""Two paths of one person are fused: headings, a failing path, and silence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a sensor takes from one sample to the next, as stamps tell it."""
+"""Time from one sample to the next, from timestamps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Walking velocity update: speed at the instants, leg lengths, and a shank that shows nothing."""
+"""Walking velocity update: speed at the instants, leg lengths, and a failed shank sensor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Height from the air's pressure: lifts, ramps and stairs, and what the air does by itself."""
+"""Height from pressure: lifts, ramps and stairs, and changes of the weather."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Heading from the magnetic field: what it gives on open ground, and that steel does no harm."""
+"""Heading from the magnetic field: its benefit on open ground, and no harm by steel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""North from a calibrated compass: when it is said, and how sure that is."""
+"""North from a calibrated compass: when it is stated, and its uncertainty."""
 
 from __future__ import annotations
 

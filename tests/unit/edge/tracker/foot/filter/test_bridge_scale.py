@@ -1,4 +1,4 @@
-"""Scales of bridged rates: the same as in a filter that has them among its errors."""
+"""Scales of bridged rates: the same as in a filter that has them among its states."""
 
 from __future__ import annotations
 

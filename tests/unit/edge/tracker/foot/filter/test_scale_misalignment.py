@@ -1,4 +1,4 @@
-"""What the gyroscope's gains make of heading and position, against gains that are really off."""
+"""Effect of the gyroscope's gain errors on heading and position, against real gain errors."""
 
 from __future__ import annotations
 

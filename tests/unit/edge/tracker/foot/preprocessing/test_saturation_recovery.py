@@ -1,4 +1,4 @@
-"""What is put in the place of forces and rates that have clipped."""
+"""Replacement of forces and rates that have clipped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Losses that the stamps do not show, found by the field."""
+"""Losses without a gap of the timestamps, found by the field."""
 
 from __future__ import annotations
 

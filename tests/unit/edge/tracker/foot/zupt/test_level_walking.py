@@ -1,4 +1,4 @@
-"""Floors, stairs, kerbs and ramps told apart by the steps."""
+"""Floors, stairs, kerbs and ramps, distinguished by the steps."""
 
 from __future__ import annotations
 

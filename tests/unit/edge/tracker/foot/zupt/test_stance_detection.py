@@ -1,4 +1,4 @@
-"""What the accelerometer shows at rest is learned at rest only."""
+"""Readings of the accelerometer at rest are learned at rest only."""
 
 from __future__ import annotations
 

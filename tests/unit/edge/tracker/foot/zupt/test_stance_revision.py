@@ -1,4 +1,4 @@
-"""A brief stance that the next one contradicts is taken back, with all that it has done."""
+"""A brief stance that the next one contradicts is undone with all its effects."""
 
 from __future__ import annotations
 

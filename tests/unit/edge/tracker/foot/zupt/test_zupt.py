@@ -1,4 +1,4 @@
-"""How much a still sample is worth."""
+"""Weight of a still sample."""
 
 from __future__ import annotations
 

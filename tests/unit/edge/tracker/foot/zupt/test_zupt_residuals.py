@@ -1,4 +1,4 @@
-"""Which noise is an ordinary stride's, and so stated as the landings show it."""
+"""Noise of an ordinary stride, stated as the landings show it."""
 
 from __future__ import annotations
 
