@@ -38,6 +38,13 @@ class DepartmentIncidentView(Answer, frozen=True):
     overdue: int  # members whose PAR is overdue
 
 
+class DepartmentIncidentsView(Answer, frozen=True):
+    """A part of the incidents, open ones first, then the newest."""
+
+    total: int  # that were asked for
+    incidents: tuple[DepartmentIncidentView, ...]
+
+
 class DepartmentAlarmView(Answer, frozen=True):
     """An alarm that is not resolved."""
 

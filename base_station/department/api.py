@@ -22,6 +22,7 @@ from base_station.api.routes import login, users
 from base_station.api.services import LoginServices
 from base_station.department.answers import (
     DepartmentEventView,
+    DepartmentIncidentsView,
     DepartmentPeopleView,
     DepartmentView,
     StartedReplay,
@@ -60,6 +61,18 @@ class PastIncident(Form):
 def get_department(views: Views, _: Viewer) -> DepartmentView:
     """All stations, incidents and open alarms of the department."""
     return views.overview()
+
+
+@router.get("/incidents")
+def list_department_incidents(
+    views: Views,
+    _: Viewer,
+    search: Filter = "",
+    skip: Annotated[int, Query(ge=0)] = 0,
+    limit: Limit = 100,
+) -> DepartmentIncidentsView:
+    """Incidents of all stations, also of years ago: open ones first, then the newest."""
+    return views.incidents(search, skip, limit)
 
 
 @router.get("/people")

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from base_station.department.answers import (
     DepartmentAlarmView,
     DepartmentEventView,
+    DepartmentIncidentsView,
     DepartmentIncidentView,
     DepartmentPeopleView,
     DepartmentPersonView,
@@ -98,6 +99,15 @@ class DepartmentViews:
             now_ms=to_ms(self._clock.utc_ns()),
             total=sum(len(people) for _, people in found),
             people=tuple(self._person_view(picture, person) for _, picture, person in part),
+        )
+
+    def incidents(self, search: str, skip: int, limit: int) -> DepartmentIncidentsView:
+        """Incidents with all words of ``search``, open ones first.  Raises StoreError."""
+        found, total = self._tables.find_incidents(search, skip, limit)
+        pictures = self._picture.all()
+        return DepartmentIncidentsView(
+            total=total,
+            incidents=tuple(_incident_view(one, pictures.get(one.station, ())) for one in found),
         )
 
     def events(self, before: int | None, limit: int) -> tuple[DepartmentEventView, ...]:

@@ -113,3 +113,20 @@ def test_tables_of_a_newer_program_are_refused(store: Database, tables: Departme
         session.merge(DepartmentSchema(version=1)).version = 2
     with pytest.raises(StoreError, match="a newer Muster made them"):
         DepartmentTables(store)
+
+
+def test_incidents_are_found_by_all_words_in_parts(tables: DepartmentTables) -> None:
+    names = ("Öl fire at MILL Road", "öl spill", "Mill fire", "mill ÖL store")
+    for seq, name in enumerate(names, start=1):
+        closed_ms = None if name == "Mill fire" else 900
+        incident = IncidentEvent(f"i{seq}", name, 100 * seq, closed_ms)
+        take(tables, event(seq, f"e{seq}", incident), after_seq=seq - 1)
+
+    def found(search: str, skip: int = 0, limit: int = 10) -> tuple[list[str], int]:
+        rows, total = tables.find_incidents(search, skip, limit)
+        return [one.incident_id for one in rows], total
+
+    assert found("öl MILL") == (["i4", "i1"], 2)
+    assert found("engine-7 mill") == (["i3", "i4", "i1"], 3)  # the open one first
+    assert found("", skip=1, limit=2) == (["i4", "i2"], 4)
+    assert found("%") == ([], 0)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import msgspec
-from sqlalchemy import func, select
+from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session
 
 from base_station.department_wire import (
@@ -36,6 +36,7 @@ from base_station.storage.db.upserts import insert_into
 from shared.errors import StoreError
 
 _RESOLVED = "resolved"
+_OPEN_FIRST = ReportedIncident.closed_ms.is_not(None), ReportedIncident.opened_ms.desc()
 
 
 class Reported(NamedTuple):
@@ -129,13 +130,31 @@ class DepartmentTables:
 
     def incidents(self, limit: int) -> Sequence[ReportedIncident]:
         """Open ones first, then the newest."""
-        wanted = (
-            select(ReportedIncident)
-            .order_by(ReportedIncident.closed_ms.is_not(None), ReportedIncident.opened_ms.desc())
-            .limit(limit)
-        )
+        wanted = select(ReportedIncident).order_by(*_OPEN_FIRST).limit(limit)
         with self._store.read() as session:
             return session.scalars(wanted).all()
+
+    def find_incidents(
+        self, search: str, skip: int, limit: int
+    ) -> tuple[Sequence[ReportedIncident], int]:
+        """A part of those with all words of ``search`` in their name or station, open ones first,
+        then the newest; and how many there are.
+
+        The words are compared here: SQLite folds the case of ASCII alone.
+        """
+        words = search.casefold().split()
+        key = ReportedIncident.station, ReportedIncident.incident_id
+        with self._store.read() as session:
+            found = [
+                (station, incident_id)
+                for station, incident_id, name in session.execute(
+                    select(*key, ReportedIncident.name).order_by(*_OPEN_FIRST)
+                )
+                if all(word in f"{name} {station}".casefold() for word in words)
+            ]
+            part = tuple_(*key).in_(found[skip : skip + limit])
+            rows = session.scalars(select(ReportedIncident).where(part).order_by(*_OPEN_FIRST))
+            return rows.all(), len(found)
 
     def incident(self, station: str, incident_id: str) -> ReportedIncident | None:
         with self._store.read() as session:

@@ -3,18 +3,15 @@ import { clockTime, dateAndTime } from "../format";
 import { t } from "../language/translate";
 import type { DepartmentIncidentView, DepartmentView, StartedReplay } from "./answers";
 import { consoleUrl } from "./consoles";
-import { openArchived } from "./reports";
+import { foundIncidents, incidentSearch, incidentSkip, openArchived, searchIncidents } from "./reports";
 import { ConsoleLink, Section } from "./Section";
+import { Turner } from "./Turner";
 
 const COLUMNS = ["incident", "station", "people", "maydays", "alarms_open", "par_overdue", "opened", "show"] as const;
 
-/** Open ones first, then the newest. */
+/** Open ones first, then the newest; all that there ever were, where they are searched for. */
 export function Incidents({ view }: { view: DepartmentView }) {
-  const words = useSignal("");
-  const sought = words.value.toLocaleLowerCase();
-  const found = view.incidents.filter((one) =>
-    `${one.name} ${one.station}`.toLocaleLowerCase().includes(sought),
-  );
+  const found = foundIncidents.value;
   return (
     <Section
       besideMap
@@ -22,14 +19,28 @@ export function Incidents({ view }: { view: DepartmentView }) {
       title={t("department.incidents")}
       columns={COLUMNS.map((key) => t(`department.${key}`))}
       empty={t("department.no_incidents")}
-      rows={found.map((one) => (
+      rows={(found?.incidents ?? view.incidents).map((one) => (
         <Row key={`${one.station} ${one.incident_id}`} incident={one} view={view} />
       ))}
     >
-      <label class="row">
-        {t("department.search_incident")}
-        <input type="search" value={words} onInput={(event) => (words.value = event.currentTarget.value)} />
-      </label>
+      <p class="row">
+        <label class="row">
+          {t("department.search_incident")}
+          <input
+            type="search"
+            maxLength={80}
+            value={incidentSearch}
+            onInput={(event) => searchIncidents(event.currentTarget.value)}
+          />
+        </label>
+        {found !== null && (
+          <Turner
+            first={incidentSkip.value}
+            total={found.total}
+            turn={(first) => searchIncidents(incidentSearch.peek(), first)}
+          />
+        )}
+      </p>
     </Section>
   );
 }

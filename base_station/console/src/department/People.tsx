@@ -1,10 +1,10 @@
 import { age, floorName } from "../format";
-import { length, number } from "../language/measures";
+import { length } from "../language/measures";
 import { label, t } from "../language/translate";
-import { PAGE } from "../http";
 import type { DepartmentPersonView, DepartmentView } from "./answers";
 import { people, search, skip, station, turnTo, want } from "./reports";
 import { Section } from "./Section";
+import { Turner } from "./Turner";
 
 const COLUMNS = ["who", "crew", "station", "incident", "link", "place", "par", "alarms_open"] as const;
 const LINK_CLASS: Readonly<Record<string, string>> = { live: "good", stale: "doubtful", never: "doubtful" };
@@ -41,27 +41,9 @@ export function People({ view }: { view: DepartmentView }) {
             ))}
           </select>
         </label>
-        {shown !== null && <Turner total={shown.total} />}
+        {shown !== null && <Turner first={skip.value} total={shown.total} turn={turnTo} />}
       </p>
     </Section>
-  );
-}
-
-function Turner({ total }: { total: number }) {
-  const first = skip.value;
-  const last = Math.min(first + PAGE, total);
-  return (
-    <>
-      <button disabled={first === 0} onClick={() => turnTo(first - PAGE)}>
-        {t("department.before")}
-      </button>
-      <span role="status">
-        {t("department.shown", { first: number(Math.min(first + 1, total)), last: number(last), total: number(total) })}
-      </span>
-      <button disabled={last >= total} onClick={() => turnTo(first + PAGE)}>
-        {t("department.after")}
-      </button>
-    </>
   );
 }
 

@@ -32,6 +32,11 @@ export interface DepartmentIncidentView {
   overdue: number;
 }
 
+export interface DepartmentIncidentsView {
+  total: number;
+  incidents: DepartmentIncidentView[];
+}
+
 export interface DepartmentAlarmView {
   station: string;
   alarm_id: string;

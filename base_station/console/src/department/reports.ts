@@ -3,7 +3,7 @@ import { effect, signal } from "@preact/signals";
 import { ApiError, call, id, PAGE } from "../http";
 import { t } from "../language/translate";
 import * as api from "../api";
-import type { DepartmentPeopleView, DepartmentView, StartedReplay } from "./answers";
+import type { DepartmentIncidentsView, DepartmentPeopleView, DepartmentView, StartedReplay } from "./answers";
 
 const PERIOD_MS = 1000;
 const SHUT_OUT = [401, 403];
@@ -11,6 +11,8 @@ const SHUT_OUT = [401, 403];
 /** Null: nobody is logged in, or nothing has come yet. */
 export const overview = signal<DepartmentView | null>(null);
 export const people = signal<DepartmentPeopleView | null>(null);
+/** Incidents that were searched for; null: none were, or nothing has come yet. */
+export const foundIncidents = signal<DepartmentIncidentsView | null>(null);
 /** Why what is shown is old; empty: it is current. */
 export const problem = signal("");
 export const isLoggedIn = signal(false);
@@ -19,6 +21,9 @@ export const isLoggedIn = signal(false);
 export const search = signal("");
 export const station = signal("");
 export const skip = signal(0);
+/** Which incidents are shown; empty: the open and the newest ones. */
+export const incidentSearch = signal("");
+export const incidentSkip = signal(0);
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 let turn = 0;
@@ -28,12 +33,14 @@ export async function refresh(): Promise<void> {
   clearTimeout(timer);
   const mine = ++turn;
   try {
-    const [all, some] = await Promise.all([
+    const [all, some, found] = await Promise.all([
       call<DepartmentView>("GET", "/department"),
       call<DepartmentPeopleView>("GET", `/department/people${query()}`),
+      wantedIncidents(),
     ]);
     if (mine !== turn) return; // somebody has asked for something else since
-    [overview.value, people.value, problem.value, isLoggedIn.value] = [all, some, "", true];
+    [overview.value, people.value, foundIncidents.value] = [all, some, found.incidents];
+    [problem.value, isLoggedIn.value] = [found.problem, true];
   } catch (error) {
     if (mine !== turn) return;
     if (error instanceof ApiError && SHUT_OUT.includes(error.status)) {
@@ -49,6 +56,30 @@ export async function refresh(): Promise<void> {
 function query(): string {
   const wanted = `search=${id(search.peek())}&station=${id(station.peek())}`;
   return `?${wanted}&skip=${skip.peek()}&limit=${PAGE}`;
+}
+
+interface Found {
+  incidents: DepartmentIncidentsView | null;
+  problem: string;
+}
+
+/** A search asks the database: while that is away, all else goes on from memory. */
+async function wantedIncidents(): Promise<Found> {
+  const search = incidentSearch.peek().trim();
+  if (search === "") return { incidents: null, problem: "" };
+  const wanted = `search=${id(search)}&skip=${incidentSkip.peek()}&limit=${PAGE}`;
+  try {
+    const incidents = await call<DepartmentIncidentsView>("GET", `/department/incidents?${wanted}`);
+    return { incidents, problem: "" };
+  } catch (error) {
+    if (!(error instanceof ApiError) || SHUT_OUT.includes(error.status)) throw error;
+    return { incidents: foundIncidents.peek(), problem: error.message };
+  }
+}
+
+export function searchIncidents(search: string, first = 0): void {
+  [incidentSearch.value, incidentSkip.value] = [search, Math.max(0, first)];
+  void refresh();
 }
 
 /** People of this station, or whose name has these words, from the first. */
