@@ -111,6 +111,8 @@ FIELDS: Mapping[str, str] = {
     "is a picture.",
     "PlanDraft.lat_deg": "Latitude (WGS-84) of the plan's origin; null: the file does not say it.",
     "PlanDraft.lon_deg": "Longitude (WGS-84) of the plan's origin; null: the file does not say it.",
+    "is_place_surveyed": "False: the place of the plan's origin is a suggestion, such as a city "
+    "that a drawing program sets by itself; a person has to look at it.",
     "pages": "How many pages the file has.",
     "page": "The page of a PDF, from 1.",
     "unit": "Unit of length of a DXF; left out: as the file says.",

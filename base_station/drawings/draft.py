@@ -22,6 +22,8 @@ class Draft(msgspec.Struct, frozen=True, tag="draft"):
     plan: dict[str, Any] | None = None  # GeoJSON in site metres, as ``site/plan`` takes it
     lat_deg: float | None = None  # of the plan's origin; None: the file does not have it
     lon_deg: float | None = None
+    plan_rotation_rad: float = 0.0  # true heading of the plan's north axis
+    is_place_surveyed: bool = True  # else a suggestion, which a person has to look at
     pages: int = 1  # of the file
     notes: tuple[str, ...] = ()  # for a person: parts of the file that are not in the draft
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from base_station.drawings import dxf, geojson, pdf, pictures
+from base_station.drawings import dxf, geojson, ifc, pdf, pictures
 from base_station.drawings.draft import Draft, Options
 from shared.errors import UserError
 
 _PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF")  # PNG, JPEG, WebP
 _BOM = b"\xef\xbb\xbf"
 _BINARY_DXF = b"AutoCAD Binary DXF"
-_KINDS = "PNG, JPEG, WebP, PDF, GeoJSON, IMDF or DXF"
+_KINDS = "PNG, JPEG, WebP, PDF, GeoJSON, IMDF, DXF or IFC"
+_DWG = b"AC10"
+_IFC_XML = b"<?xml"
 _OTHERS = {
-    b"AC10": "this is a DWG, whose format is not public; save it as DXF",
-    b"ISO-10303-21": "IFC is not read; export the floor as DXF, IMDF or PDF",
+    _DWG: "this is a DWG, whose format is not public; save it as DXF",
+    _IFC_XML: "XML is not read; save an ifcXML as IFC",
 }
 
 
@@ -26,14 +28,22 @@ def read_drawing(content: bytes, options: Options) -> Draft:
         return Draft(picture=pictures.encoded(page), pages=pages)
     if text.startswith(b"{"):
         return geojson.read_geojson(text, options.name)
+    if text.startswith(ifc.BEGINS):
+        return ifc.read_ifc(text, options)
     if content.startswith(b"PK"):
-        return geojson.read_imdf(content, options.name)
+        return _read_zipped(content, options)
     if _is_dxf(content, text):
         return dxf.read_dxf(content, options)
     for beginning, advice in _OTHERS.items():
         if text.startswith(beginning):
             raise UserError(advice)
     raise UserError(f"this file is no drawing that can be read; send {_KINDS}")
+
+
+def _read_zipped(content: bytes, options: Options) -> Draft:
+    if ifc.is_zipped_ifc(content):
+        return ifc.read_zipped_ifc(content, options)
+    return geojson.read_imdf(content, options.name)
 
 
 def _is_dxf(content: bytes, text: bytes) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from shared.errors import UserError
@@ -22,18 +22,27 @@ class DrawnShape(NamedTuple):
     name: str = ""
 
 
-def plan_of(name: str, shapes: Sequence[DrawnShape]) -> dict[str, Any]:
-    """GeoJSON in site metres, as ``site/plan`` takes it.  UserError where it is no building."""
+def plan_of(
+    name: str, shapes: Sequence[DrawnShape], heights_m: Mapping[int, float] | None = None
+) -> dict[str, Any]:
+    """GeoJSON in site metres, as ``site/plan`` takes it.  UserError where it is no building.
+
+    ``heights_m`` of the floors above the ground floor; without, they are ``STOREY_M`` apart.
+    """
     if not shapes:
         raise UserError("the drawing has no line that could be a wall")
     require_size([point for shape in shapes for point in shape.points])
-    floors = sorted({shape.floor for shape in shapes})
+    if heights_m is None:
+        heights_m = {shape.floor: shape.floor * STOREY_M for shape in shapes}
     return {
         "type": "FeatureCollection",
         "muster": {
             "frame": "site-m",
             "name": name,
-            "floors": [{"floor": floor, "down_m": 0.0 - floor * STOREY_M} for floor in floors],
+            "floors": [
+                {"floor": floor, "down_m": 0.0 - height_m}
+                for floor, height_m in sorted(heights_m.items())
+            ],
         },
         "features": [_feature(shape) for shape in shapes],
     }

@@ -42,7 +42,7 @@ def test_library_of_an_optional_part_is_the_tested_one(part: str) -> None:
     assert installed == (required, pinned("requirements.lock")[required])
 
 
-@pytest.mark.parametrize("part", ["archive", "plans", "postgresql", "report"])
+@pytest.mark.parametrize("part", ["archive", "ifc", "plans", "postgresql", "report"])
 def test_library_and_its_dependencies_are_the_tested_ones(part: str) -> None:
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed, tested = pinned(f"deploy/requirements-{part}.lock"), pinned("requirements.lock")

@@ -31,6 +31,8 @@ class PlanDraft(BaseModel):
     plan: dict[str, Any] | None
     lat_deg: float | None
     lon_deg: float | None
+    plan_rotation_rad: float
+    is_place_surveyed: bool
     pages: int
     notes: list[str]
 

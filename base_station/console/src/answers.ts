@@ -635,6 +635,8 @@ export interface PlanDraft {
   plan: object | null;
   lat_deg: number | null;
   lon_deg: number | null;
+  plan_rotation_rad: number;
+  is_place_surveyed: boolean;
   pages: number;
   notes: string[];
 }

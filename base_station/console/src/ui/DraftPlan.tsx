@@ -1,9 +1,10 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
+import { placeWords } from "../plan/anchor";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
-import type { Plan } from "../wire";
+import type { AnchorView, Plan } from "../wire";
 import { t } from "../language/translate";
 import { PlanDrawing } from "./PlanDrawing";
 import { SendPlan } from "./SendPlan";
@@ -11,7 +12,16 @@ import { Waiting } from "./Waiting";
 
 const UNITS = ["mm", "cm", "m", "in", "ft"];
 /** Refused: with another unit it may be read. */
-const NOTHING: api.PlanDraft = { picture: null, plan: null, lat_deg: null, lon_deg: null, pages: 1, notes: [] };
+const NOTHING: api.PlanDraft = {
+  picture: null,
+  plan: null,
+  lat_deg: null,
+  lon_deg: null,
+  plan_rotation_rad: 0,
+  is_place_surveyed: false,
+  pages: 1,
+  notes: [],
+};
 
 interface Props {
   file: File;
@@ -24,12 +34,14 @@ export function DraftPlan({ file, shown, done }: Props) {
   const draft = useSignal<api.PlanDraft | null>(null);
   const page = useSignal(1);
   const unit = useSignal("");
+  const usesPlace = useSignal(true);
   const isDxf = /\.dxf$/i.test(file.name);
   useEffect(() => {
     let isWanted = true;
     draft.value = null;
     void attempt(api.draftPlan(file, page.value, unit.value)).then((read) => {
       if (!isWanted) return;
+      usesPlace.value = read?.is_place_surveyed ?? false;
       if (read === null && !isDxf) done();
       else draft.value = read ?? NOTHING;
     });
@@ -39,6 +51,7 @@ export function DraftPlan({ file, shown, done }: Props) {
   }, [file, page.value, unit.value]);
   const read = draft.value;
   if (read === null) return <Waiting />;
+  const place = placeOf(read);
   const name = file.name.replace(/\.[^.]*$/, "").slice(0, 80);
   return (
     <>
@@ -73,12 +86,28 @@ export function DraftPlan({ file, shown, done }: Props) {
       {read.picture !== null && (
         <PlanDrawing key={`page ${page.value}`} picture={read.picture} shown={shown} name={name} />
       )}
+      {place !== null && (
+        <label class="choice">
+          <input
+            type="checkbox"
+            checked={usesPlace.value}
+            onChange={(event) => (usesPlace.value = event.currentTarget.checked)}
+          />
+          <span>{t("draft.use_place", { place: placeWords(place) })}</span>
+        </label>
+      )}
       {read.plan !== null && (
         <div class="row">
           <span>{t("draft.contents", { contents: contents(read.plan as Partial<Plan>) })}</span>
-          <SendPlan plan={read.plan} replaces={shown !== null} place={read} />
+          <SendPlan plan={read.plan} replaces={shown !== null} place={usesPlace.value ? place : null} />
         </div>
       )}
     </>
   );
+}
+
+/** Of the plan's origin on the Earth, where the file has it. */
+function placeOf({ lat_deg, lon_deg, plan_rotation_rad }: api.PlanDraft): AnchorView | null {
+  if (lat_deg === null || lon_deg === null) return null;
+  return { lat_deg, lon_deg, height_m: 0, plan_rotation_rad };
 }

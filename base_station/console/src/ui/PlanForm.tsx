@@ -34,7 +34,7 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
         {t("plan_form.new")}
         <input
           type="file"
-          accept=".geojson,.json,application/geo+json,.zip,.imdf,.dxf,.pdf,.png,.jpg,.jpeg,.webp"
+          accept=".geojson,.json,application/geo+json,.zip,.imdf,.dxf,.ifc,.ifczip,.pdf,.png,.jpg,.jpeg,.webp"
           onChange={(event) => void attempt(choose(event.currentTarget.files?.[0]))}
         />
       </label>

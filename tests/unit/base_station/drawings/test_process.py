@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 
+import msgspec
 import pytest
 from PIL import Image
 
@@ -36,4 +37,22 @@ def test_a_process_that_ends_or_hangs_is_a_refusal(
     monkeypatch.setattr(process, "command_of", lambda options: command)
     monkeypatch.setattr(process, "MOST_WAIT_S", 3.0)
     with pytest.raises(UserError, match=reason):
+        process.draft_of(b"", Options())
+
+
+def test_a_drawing_that_takes_too_long_to_read_is_refused_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The kernel signals the limit of the processor before it kills."""
+    program = (
+        "import base_station.drawings.__main__ as main\n"
+        "main.MOST_CPU_S = 2\n"
+        "def endless(content, options):\n"
+        "    while True: pass\n"
+        "main.read_drawing = endless\n"
+        "main.main()"
+    )
+    options = msgspec.json.encode(Options()).decode()
+    monkeypatch.setattr(process, "command_of", lambda _: (sys.executable, "-c", program, options))
+    with pytest.raises(UserError, match="takes longer than 2 s to be read; send a part"):
         process.draft_of(b"", Options())

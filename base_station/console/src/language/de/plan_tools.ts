@@ -30,7 +30,7 @@ export const plan_view: Part<"plan_view"> = {
 export const plan_form: Part<"plan_form"> = {
   none: "Kein Plan; Personen stehen auf einem Meterraster.",
   shown: "Gezeigt wird {plan}.",
-  new: "Neuer Plan: Bild, PDF, DXF, IMDF oder GeoJSON",
+  new: "Neuer Plan: Bild, PDF, DXF, IFC, IMDF oder GeoJSON",
   draw: "Wände zeichnen",
   file: "Diese Datei: {plan}.",
   by_hand: "Von Hand gezeichnet",

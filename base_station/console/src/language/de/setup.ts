@@ -40,6 +40,7 @@ export const draft: Part<"draft"> = {
   page: "Seite",
   page_of: "{page, number} von {all, number}",
   contents: "Diese Datei: {contents}.",
+  use_place: "Lage auf der Erde aus der Datei übernehmen: {place}",
 };
 
 export const erase: Part<"erase"> = {

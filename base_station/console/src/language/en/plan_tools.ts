@@ -29,7 +29,7 @@ export const plan_view = {
 export const plan_form = {
   none: "There is no plan; people are shown on a metre grid.",
   shown: "Shown is {plan}.",
-  new: "New plan: image, PDF, DXF, IMDF or GeoJSON",
+  new: "New plan: image, PDF, DXF, IFC, IMDF or GeoJSON",
   draw: "Draw walls",
   file: "This file: {plan}.",
   by_hand: "Drawn by hand",

@@ -39,6 +39,7 @@ export const draft = {
   page: "Page",
   page_of: "{page, number} of {all, number}",
   contents: "This file: {contents}.",
+  use_place: "Use the file’s place on the Earth: {place}",
 } as const;
 
 export const erase = {

@@ -30,7 +30,7 @@ export const plan_view: Part<"plan_view"> = {
 export const plan_form: Part<"plan_form"> = {
   none: "Pas de plan\u00a0; les personnes sont sur une grille métrique.",
   shown: "Affiché\u00a0: {plan}.",
-  new: "Nouveau plan\u00a0: image, PDF, DXF, IMDF ou GeoJSON",
+  new: "Nouveau plan\u00a0: image, PDF, DXF, IFC, IMDF ou GeoJSON",
   draw: "Dessiner les murs",
   file: "Ce fichier\u00a0: {plan}.",
   by_hand: "Dessiné à la main",

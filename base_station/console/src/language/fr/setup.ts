@@ -40,6 +40,7 @@ export const draft: Part<"draft"> = {
   page: "Page",
   page_of: "{page, number} sur {all, number}",
   contents: "Ce fichier\u00a0: {contents}.",
+  use_place: "Reprendre la position sur la Terre du fichier\u00a0: {place}",
 };
 
 export const erase: Part<"erase"> = {

@@ -1,0 +1,166 @@
+"""Models of buildings (IFC2x3, IFC4, IFC4x3), by ``ifcopenshell`` of the part ``muster[ifc]``."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+
+from base_station.drawings.draft import Draft, Options
+from base_station.drawings.ifc_building import Building, building_of
+from base_station.drawings.ifc_place import Place, place_of
+from base_station.drawings.ifc_plan import DrawnFloors, draw_floors
+from base_station.drawings.ifc_sections import Solid
+from base_station.drawings.shapes import MOST_POINTS, box_of, plan_of
+from shared.errors import UserError
+
+BEGINS = b"ISO-10303-21"
+ENDING = ".ifc"
+_ENDS = b"END-ISO-10303-21"
+_LAST_BYTES = 4096  # among which a whole file ends
+_MOST_UNPACKED_BYTES = 100_000_000
+_MISSING = (
+    "the library ifcopenshell, which reads IFC, is not installed at the station: pip install "
+    "--require-hashes -r deploy/requirements-ifc.lock; or export the floors as DXF, IMDF or PDF"
+)
+_UNREADABLE = (
+    "the IFC cannot be read; save it anew as IFC2x3, IFC4 or IFC4x3, or print its floors to PDF"
+)
+_NO_STOREY = (
+    "the IFC has no storeys (IfcBuildingStorey): export it with them, or print its floors to PDF"
+)
+_NO_WALL = "the IFC has no wall with a shape on any of its storeys; print its floors to PDF"
+_SUGGESTED = (
+    "Its place on the Earth is that of its site, which many drawing programs set by themselves: "
+    "look at it before you use it."
+)
+_NO_PLACE = "It has no place on the Earth: align it by two points."
+_NOT_DRAWN = {"IfcColumn": "columns", "IfcBuildingElementProxy": "elements without a class"}
+
+
+def is_zipped_ifc(content: bytes) -> bool:
+    """Whether a ZIP file has an IFC in it; the file may be torn."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            return any(_is_ifc(entry) for entry in archive.infolist())
+    except zipfile.BadZipFile:
+        return False
+
+
+def read_zipped_ifc(content: bytes, options: Options) -> Draft:
+    """The first IFC of a ZIP file, such as ``.ifczip``.  Raises UserError as ``read_ifc``."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entry = next(one for one in archive.infolist() if _is_ifc(one))
+            if entry.file_size > _MOST_UNPACKED_BYTES:
+                raise UserError(
+                    f"the IFC in this ZIP file is larger than {_MOST_UNPACKED_BYTES // 10**6} MB; "
+                    "export walls, doors, stairs and spaces only"
+                )
+            unpacked = archive.read(entry)
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as error:
+        raise UserError(f"this ZIP file cannot be read: {error}") from error
+    return read_ifc(unpacked, options)
+
+
+def read_ifc(content: bytes, options: Options) -> Draft:
+    """Raises UserError with the fault of the file, and advice."""
+    if find_spec("ifcopenshell") is None:
+        raise UserError(_MISSING)
+    file = _opened(content)
+    unit: Any = import_module("ifcopenshell.util.unit")
+    unit_m = float(unit.calculate_unit_scale(file))
+    building = building_of(file, unit_m)
+    if not building.levels:
+        raise UserError(_NO_STOREY)
+    drawn = draw_floors(building, _solids(file, building))
+    if not drawn.shapes:
+        raise UserError(_NO_WALL)
+    # Models begin anywhere, often far away in a grid of a survey.
+    west, south, _, _ = box_of(point for shape in drawn.shapes for point in shape.points)
+    shapes = [
+        shape._replace(points=[(x - west, y - south) for x, y in shape.points])
+        for shape in drawn.shapes
+    ]
+    ground_m = drawn.levels[0].height_m
+    heights_m = {
+        floor: round(level.height_m - ground_m, 3) for floor, level in drawn.levels.items()
+    }
+    place, notes = place_of(file, unit_m, (west, south))
+    for kind, words in _NOT_DRAWN.items():  # though people may not walk through them
+        drawn.left_out[words] += len(file.by_type(kind))
+    return Draft(
+        plan=plan_of(options.name, shapes, heights_m),
+        lat_deg=place.lat_deg if place else None,
+        lon_deg=place.lon_deg if place else None,
+        plan_rotation_rad=place.rotation_rad if place else 0.0,
+        is_place_surveyed=place is not None and place.is_surveyed,
+        notes=(*_notes_of(drawn, heights_m), *notes, *_note_of_place(place)),
+    )
+
+
+def _is_ifc(entry: zipfile.ZipInfo) -> bool:
+    return entry.filename.lower().endswith(ENDING)
+
+
+def _opened(content: bytes) -> Any:
+    if _ENDS not in content[-_LAST_BYTES:]:
+        raise UserError("the IFC is torn: its end is missing; copy or save it anew")
+    library: Any = import_module("ifcopenshell")
+    try:
+        # Its own letters are ASCII; others are escaped by the standard, or wrongly of some code.
+        file = library.file.from_string(content.decode("latin-1"))
+        projects = file.by_type("IfcProject")
+    except (RuntimeError, library.Error, library.SchemaError) as error:
+        raise UserError(_UNREADABLE) from error
+    if not projects:
+        raise UserError(_UNREADABLE)
+    return file
+
+
+def _solids(file: Any, building: Building) -> dict[int, Solid]:
+    """By the id of the part: those that have a shape which the library can make."""
+    parts = {part.id(): part for element in building.elements for part in element.parts}
+    if not parts:
+        return {}
+    geometry: Any = import_module("ifcopenshell.geom")
+    shape: Any = import_module("ifcopenshell.util.shape")
+    settings = geometry.settings()
+    settings.set("use-world-coords", True)
+    settings.set("disable-opening-subtractions", True)
+    solids = {}
+    count = 0
+    for made in geometry.iterator(settings, file, 1, include=list(parts.values())):
+        vertices = np.array(shape.get_vertices(made.geometry), dtype=np.float64)
+        triangles = np.array(shape.get_faces(made.geometry), dtype=np.int64)
+        if len(triangles) and np.isfinite(vertices).all():
+            solids[made.id] = Solid(vertices, triangles)
+            count += len(vertices)
+        if count > 100 * MOST_POINTS:
+            raise UserError("the IFC has too much detail; export walls, doors and stairs only")
+    return solids
+
+
+def _notes_of(drawn: DrawnFloors, heights_m: dict[int, float]) -> list[str]:
+    floors = ", ".join(
+        f"{floor} is {level.name or 'without name'} at {heights_m[floor]:.2f} m"
+        for floor, level in drawn.levels.items()
+    )
+    notes = [f"Its floors: {floors}."]
+    if drawn.unused:
+        names = ", ".join(name or "one without name" for name in drawn.unused)
+        notes.append(f"Storeys without doors, rooms and stairs are left out: {names}.")
+    left_out = [f"{what}: {count}" for what, count in sorted(drawn.left_out.items()) if count]
+    if left_out:
+        notes.append(f"Left out are {'; '.join(left_out)}.")
+    return notes
+
+
+def _note_of_place(place: Place | None) -> tuple[str, ...]:
+    if place is None:
+        return (_NO_PLACE,)
+    return () if place.is_surveyed else (_SUGGESTED,)
