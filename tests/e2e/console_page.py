@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import io
+import os
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Locator, Page
 
 from tests.e2e.console_files import CONSOLE
 
 AXE = CONSOLE / "node_modules/axe-core/axe.min.js"
+COLOURS = 64  # of a picture in a guide
 RESTS = 6  # looks in a row, a frame and 60 ms apart, between which the plan stays as large
 
 
@@ -55,6 +60,13 @@ def confirm(where: Locator, name: str) -> None:
     where.get_by_role("button", name=name).click()
     where.page.wait_for_timeout(600)
     where.get_by_role("button", name=f"Yes, {name.lower()}").click()
+
+
+def take_picture(shown: Page | Locator, folder: Path, name: str) -> None:
+    """Take a picture; those of docs/howto with ``MUSTER_PICTURES=docs/howto``, in few colours."""
+    taken = io.BytesIO(shown.screenshot())
+    to = Path(os.environ.get("MUSTER_PICTURES", folder)) / name
+    Image.open(taken).convert("RGB").quantize(COLOURS).save(to, optimize=True)
 
 
 def metres_north(card: Locator) -> float:

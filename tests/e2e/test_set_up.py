@@ -1,13 +1,13 @@
 """Set-up at the vehicle, on a station: one story in the order of the tests.
 
-The number of presses is part of it: who sets up has a minute.  A press is a click on the page; to
+It takes the pictures of docs/howto/set-up-at-the-vehicle.md.  The number of presses is part of it:
+who sets up has a minute.  A press is a click on the page; to
 choose a file counts as one, to write does not.
 """
 
 from __future__ import annotations
 
 import io
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,8 +19,9 @@ from PIL import Image, ImageDraw
 from playwright.sync_api import Browser, FilePayload, Locator, Page, expect
 
 from shared.enrolment import read_enrolment
-from tests.e2e.console_page import barriers, close, confirm, drawn, menu
+from tests.e2e.console_page import barriers, close, confirm, drawn, menu, take_picture
 from tests.e2e.station_process import StationProcess
+from tests.rig.ifc_house import house_of_two_storeys
 from tests.rig.station_command import Agent
 
 CREWS = "\ufeffName;Trupp;Dienstgrad\r\nJürgen Groß;Engine 1;Officer\r\nBo Li;Engine 1;\r\n"
@@ -35,11 +36,6 @@ def station(
     station.start()
     yield station
     station.stop()
-
-
-def pictures_to(folder: Path) -> Path:
-    """Where pictures go: those of docs/howto are taken with ``MUSTER_PICTURES=docs/howto``."""
-    return Path(os.environ.get("MUSTER_PICTURES", folder))
 
 
 class Presses:
@@ -64,13 +60,16 @@ def choose_csv(dialog: Locator, content: bytes) -> Locator:
     return dialog.get_by_role("region", name="People of the file")
 
 
-def test_crews_of_a_file_are_looked_at_and_then_added(page: Page, complaints: list[str]) -> None:
+def test_crews_of_a_file_are_looked_at_and_then_added(
+    page: Page, tmp_path: Path, complaints: list[str]
+) -> None:
     presses = Presses(page)
     dialog = menu(page, "People")
     found = choose_csv(dialog, CREWS.encode())
     expect(found).to_contain_text("2 people: 2 new")
     expect(dialog.get_by_text("Nobody yet")).to_be_visible()
     assert barriers(page) == []
+    take_picture(dialog, tmp_path, "people.png")
     found.get_by_role("button", name="Add 2 people").click()
     expect(found).to_have_count(0)
     assert presses.count(files=1) == 3
@@ -124,7 +123,7 @@ def test_people_are_moved_without_drawing(board: Locator, page: Page, tmp_path: 
         board.get_by_role("button", name=name).focus()
         page.keyboard.press("Enter")
     assert barriers(page) == []
-    page.screenshot(path=pictures_to(tmp_path) / "crews.png")
+    take_picture(board, tmp_path, "crews.png")
     board.get_by_role("button", name="Move here: Ladder 1").click()
     expect(crew(board, "Ladder 1").get_by_role("listitem")).to_have_count(2)
     expect(crew(board, "Engine 2")).to_have_count(0)
@@ -165,7 +164,7 @@ def test_a_unit_is_enrolled_in_three_presses_and_links_with_the_file(
     file = tmp_path / saving.value.suggested_filename
     saving.value.save_as(file)
     expect(shown).to_contain_text(f"muster edge run --enrolment {file.name}")
-    page.screenshot(path=tmp_path / "enrolment.png")
+    take_picture(dialog, tmp_path, "enrolment.png")
     assert kept_of(station.data, read_enrolment(file).identity.private_key) == []
     shown.get_by_role("button", name="Done").click()
     page.wait_for_timeout(600)
@@ -227,7 +226,7 @@ def test_a_picture_becomes_a_plan_in_six_presses(
     site.get_by_label("Distance, m").fill("40")
     expect(site.get_by_role("status").filter(has_text="1 m is 20.0 pixels")).to_be_visible()
     assert barriers(page) == []
-    page.screenshot(path=tmp_path / "scaled.png")
+    take_picture(site, tmp_path, "scaled.png")
     site.get_by_role("button", name="Set plan").click()
     expect(site).to_have_count(0)
     assert presses.count(files=1) <= 6
@@ -271,7 +270,7 @@ def test_walls_are_drawn_on_the_picture_of_another_floor_by_mouse_and_keys(
     for key in ("ArrowRight", "Enter"):
         page.keyboard.press(key)
     site.get_by_role("button", name="Undo").click()
-    page.screenshot(path=pictures_to(tmp_path) / "walls.png")
+    take_picture(site, tmp_path, "walls.png")
     confirm(site, "Replace plan")
     expect(site).to_have_count(0)
     plan = plan_of(page)
@@ -324,6 +323,51 @@ def test_ordinary_geojson_and_dxf_become_plans(page: Page, complaints: list[str]
     expect(site).to_have_count(0)
     (wall_line,) = (one["geometry"]["coordinates"] for one in plan_of(page)["features"])
     assert wall_line == [[0, 0], [10, 0]]
+
+
+def test_a_model_of_two_storeys_becomes_floors(
+    page: Page, tmp_path: Path, complaints: list[str]
+) -> None:
+    house = house_of_two_storeys("IFC4", 0.001)
+    house.site.RefLatitude, house.site.RefLongitude = (57, 42, 0), (11, 58, 12)
+    site = menu(page, "Site")
+    file = FilePayload(name="Mill Road 9.ifc", mimeType="model/ifc", buffer=house.content())
+    presses = Presses(page)
+    site.get_by_label("New plan").set_input_files(file)
+    expect(site).to_contain_text("0 is Ground floor at 0.00 m, 1 is Upper floor at 3.00 m")
+    place = site.get_by_role("checkbox", name="place on the Earth: 57.70000°, 11.97")
+    expect(place).not_to_be_checked()
+    assert barriers(page) == []
+    place.check()
+    take_picture(site, tmp_path, "model.png")
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    assert presses.count(files=1) == 4
+    plan = plan_of(page)
+    assert [one["down_m"] for one in plan["muster"]["floors"]] == [0.0, -3.0]
+    floors = page.get_by_role("group", name="Floor shown")
+    floors.get_by_role("button", name="Floor 1").click()
+    drawn(page)
+    take_picture(page, tmp_path, "floors.png")
+    site = menu(page, "Site")
+    expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
+    close(site)
+
+
+def test_the_place_that_a_model_suggests_is_left_unless_it_is_chosen(
+    page: Page, complaints: list[str]
+) -> None:
+    house = house_of_two_storeys()
+    house.site.RefLatitude, house.site.RefLongitude = (42, 21, 31), (-71, -3, -24)
+    site = menu(page, "Site")
+    file = FilePayload(name="Default.ifc", mimeType="", buffer=house.content())
+    site.get_by_label("New plan").set_input_files(file)
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    assert plan_of(page)["muster"]["name"] == "Default.ifc"
+    site = menu(page, "Site")
+    expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
+    close(site)
 
 
 def test_a_drawing_that_cannot_be_read_is_refused_with_the_reason(

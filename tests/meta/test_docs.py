@@ -82,3 +82,10 @@ def test_every_command_exists(page):
 def test_every_command_is_documented(name):
     words = f"muster {name.replace('.', ' ')}"
     assert any(words in page.read_text() for page in PAGES), words
+
+
+def test_the_pictures_of_the_set_up_are_those_that_its_test_takes():
+    page = (PROJECT_ROOT / "docs/howto/set-up-at-the-vehicle.md").read_text()
+    test = (PROJECT_ROOT / "tests/e2e/test_set_up.py").read_text()
+    taken = re.findall(r'take_picture\(\w+, tmp_path, "(\S+)"\)', test)
+    assert re.findall(r"!\[[^\]]+\]\((\S+)\)", page) == taken
