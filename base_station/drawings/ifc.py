@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from base_station.drawings.draft import Draft, Options
-from base_station.drawings.ifc_building import Building, building_of
-from base_station.drawings.ifc_place import Place, place_of
+from base_station.drawings.ifc_building import ModelBuilding, building_of
+from base_station.drawings.ifc_place import ModelPlace, place_of
 from base_station.drawings.ifc_plan import DrawnFloors, draw_floors
 from base_station.drawings.ifc_sections import Solid
 from base_station.drawings.shapes import MOST_POINTS, box_of, plan_of
@@ -43,7 +43,7 @@ _NOT_DRAWN = {"IfcColumn": "columns", "IfcBuildingElementProxy": "elements witho
 
 
 def is_zipped_ifc(content: bytes) -> bool:
-    """Whether a ZIP file has an IFC in it; the file may be torn."""
+    """True if a ZIP file has an IFC in it; the file may be torn."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             return any(_is_ifc(entry) for entry in archive.infolist())
@@ -122,7 +122,7 @@ def _opened(content: bytes) -> Any:
     return file
 
 
-def _solids(file: Any, building: Building) -> dict[int, Solid]:
+def _solids(file: Any, building: ModelBuilding) -> dict[int, Solid]:
     """By the id of the part: those that have a shape which the library can make."""
     parts = {part.id(): part for element in building.elements for part in element.parts}
     if not parts:
@@ -160,7 +160,7 @@ def _notes_of(drawn: DrawnFloors, heights_m: dict[int, float]) -> list[str]:
     return notes
 
 
-def _note_of_place(place: Place | None) -> tuple[str, ...]:
+def _note_of_place(place: ModelPlace | None) -> tuple[str, ...]:
     if place is None:
         return (_NO_PLACE,)
     return () if place.is_surveyed else (_SUGGESTED,)

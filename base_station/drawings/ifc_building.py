@@ -18,14 +18,14 @@ _MOVING = ("ESCALATOR", "MOVINGWALKWAY", "MOVINGWALK")
 _EAST: Point = (1.0, 0.0)
 
 
-class Level(NamedTuple):
+class ModelLevel(NamedTuple):
     """Floor: storeys of about one height."""
 
     height_m: float  # in the frame of the file
     name: str
 
 
-class Element(NamedTuple):
+class ModelElement(NamedTuple):
     kind: str  # wall, door, passage, stairs, lift or room
     entity: Any
     parts: tuple[Any, ...]  # that have the shape; none: the element has no shape
@@ -33,13 +33,13 @@ class Element(NamedTuple):
     along: Point = _EAST  # of a door: unit vector along the wall
 
 
-class Building(NamedTuple):
-    levels: tuple[Level, ...]  # lowest first
-    elements: tuple[Element, ...]
+class ModelBuilding(NamedTuple):
+    levels: tuple[ModelLevel, ...]  # lowest first
+    elements: tuple[ModelElement, ...]
     ground_m: float  # height that the file has for the ground floor
 
 
-def building_of(file: Any, unit_m: float) -> Building:
+def building_of(file: Any, unit_m: float) -> ModelBuilding:
     """Structure of a file whose unit of length is as long."""
     storeys = file.by_type("IfcBuildingStorey")
     contained = Counter(
@@ -55,7 +55,7 @@ def building_of(file: Any, unit_m: float) -> Building:
         element._replace(level=level_of.get(_storey_id(element.entity)))
         for element in _elements(file)
     )
-    return Building(tuple(levels), elements, datums[0] if datums else 0.0)
+    return ModelBuilding(tuple(levels), elements, datums[0] if datums else 0.0)
 
 
 def placed_at(entity: Any) -> Any:
@@ -72,9 +72,9 @@ def name_of(entity: Any) -> str:
 
 def _levels(
     storeys: Sequence[Any], walls: Counter[int], unit_m: float
-) -> tuple[list[Level], dict[int | None, int]]:
+) -> tuple[list[ModelLevel], dict[int | None, int]]:
     """With the level of each storey by its id.  Of several storeys that with most walls counts."""
-    levels: list[Level] = []
+    levels: list[ModelLevel] = []
     level_of: dict[int | None, int] = {}
     groups: list[list[tuple[float, Any]]] = []
     for height_m, storey in sorted(
@@ -85,7 +85,7 @@ def _levels(
         groups[-1].append((height_m, storey))
     for number, group in enumerate(groups):
         height_m, storey = max(group, key=lambda pair: walls[pair[1].id()])
-        levels.append(Level(height_m, name_of(storey)))
+        levels.append(ModelLevel(height_m, name_of(storey)))
         level_of |= {one.id(): number for _, one in group}
     return levels, level_of
 
@@ -102,46 +102,46 @@ def _storey_id(entity: Any) -> int | None:
     return storey.id() if storey else None
 
 
-def _elements(file: Any) -> Iterator[Element]:
+def _elements(file: Any) -> Iterator[ModelElement]:
     yield from _walls(file)
     yield from _openings(file)
     yield from _stairs_and_lifts(file)
     for space in file.by_type("IfcSpace"):
         if _use(space, "InteriorOrExteriorSpace") not in _NOT_ROOMS:
-            yield Element("room", space, _parts(space), None)
+            yield ModelElement("room", space, _parts(space), None)
 
 
-def _walls(file: Any) -> Iterator[Element]:
+def _walls(file: Any) -> Iterator[ModelElement]:
     for kind in ("IfcWall", "IfcCurtainWall"):
         for wall in file.by_type(kind):
-            yield Element("wall", wall, _parts(wall, without="IfcDoor"), None)
+            yield ModelElement("wall", wall, _parts(wall, without="IfcDoor"), None)
     for window in file.by_type("IfcWindow"):
         if not window.FillsVoids:  # else the wall around it is closed anyway
-            yield Element("wall", window, _parts(window), None)
+            yield ModelElement("wall", window, _parts(window), None)
 
 
-def _openings(file: Any) -> Iterator[Element]:
+def _openings(file: Any) -> Iterator[ModelElement]:
     for door in file.by_type("IfcDoor"):
         voids = [relation.RelatingOpeningElement for relation in door.FillsVoids]
         shaped = tuple(void for void in voids if void.Representation) or _parts(door)
-        yield Element("door", door, shaped, None, _along(door))
+        yield ModelElement("door", door, shaped, None, _along(door))
     for relation in file.by_type("IfcRelVoidsElement"):
         wall, void = relation.RelatingBuildingElement, relation.RelatedOpeningElement
         if wall.is_a("IfcWall") and _is_passage(void):
-            yield Element("passage", void, _parts(void), None, _along(wall))
+            yield ModelElement("passage", void, _parts(void), None, _along(wall))
 
 
-def _stairs_and_lifts(file: Any) -> Iterator[Element]:
+def _stairs_and_lifts(file: Any) -> Iterator[ModelElement]:
     for kind in ("IfcStair", "IfcRamp"):
         for stairs in file.by_type(kind):
-            yield Element("stairs", stairs, _parts(stairs, only=_WALKED), None)
+            yield ModelElement("stairs", stairs, _parts(stairs, only=_WALKED), None)
     for kind in ("IfcStairFlight", "IfcRampFlight"):
         for flight in file.by_type(kind):
             if not flight.Decomposes:  # else it is a part of stairs
-                yield Element("stairs", flight, _parts(flight), None)
+                yield ModelElement("stairs", flight, _parts(flight), None)
     for lift in file.by_type("IfcTransportElement"):
         is_moving = _use(lift, "OperationType") in _MOVING
-        yield Element("stairs" if is_moving else "lift", lift, _parts(lift), None)
+        yield ModelElement("stairs" if is_moving else "lift", lift, _parts(lift), None)
 
 
 _WALKED = ("IfcStairFlight", "IfcRampFlight", "IfcSlab", "IfcStair", "IfcRamp")

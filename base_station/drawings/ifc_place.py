@@ -18,7 +18,7 @@ from shared.geo import Anchor
 _NORTHWARDS_M = 100.0  # over which the grid's north is compared with true north
 
 
-class Place(NamedTuple):
+class ModelPlace(NamedTuple):
     """Of the plan's origin; the rotation is the true heading of the plan's north axis."""
 
     lat_deg: float
@@ -27,7 +27,7 @@ class Place(NamedTuple):
     is_surveyed: bool
 
 
-def place_of(file: Any, unit_m: float, origin: Point) -> tuple[Place | None, tuple[str, ...]]:
+def place_of(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None, tuple[str, ...]]:
     """Place of a point (x, y) of the file in metres, with notes for a person."""
     mapped, notes = _mapped(file, unit_m, origin)
     if mapped is not None:
@@ -35,7 +35,7 @@ def place_of(file: Any, unit_m: float, origin: Point) -> tuple[Place | None, tup
     return _by_site(file, unit_m, origin), notes
 
 
-def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[Place | None, tuple[str, ...]]:
+def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None, tuple[str, ...]]:
     """IfcMapConversion: east = E + a x - o y, north = N + o x + a y, of (a, o) a unit vector."""
     geolocation: Any = import_module("ifcopenshell.util.geolocation")
     found = geolocation.get_helmert_transformation_parameters(file)
@@ -55,7 +55,7 @@ def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[Place | None, tupl
         lat_deg, lon_deg = lat_lon_of(zone, east_m, north_m)
         if 100_000.0 <= east_m <= 900_000.0 and math.isfinite(lat_deg):
             grid_rad = _grid_north_rad(zone, east_m, north_m)
-            return Place(lat_deg, lon_deg, grid_rad - turned_rad, is_surveyed=True), ()
+            return ModelPlace(lat_deg, lon_deg, grid_rad - turned_rad, is_surveyed=True), ()
     return None, (f"Its place in {name} lies outside of that zone.",)
 
 
@@ -77,7 +77,7 @@ def _grid_north_rad(zone: Zone, east_m: float, north_m: float) -> float:
     return math.atan2(to_east_m, to_north_m)
 
 
-def _by_site(file: Any, unit_m: float, origin: Point) -> Place | None:
+def _by_site(file: Any, unit_m: float, origin: Point) -> ModelPlace | None:
     """IfcSite's latitude and longitude are those of its own placement."""
     for site in file.by_type("IfcSite"):
         if not site.RefLatitude or not site.RefLongitude:
@@ -93,7 +93,7 @@ def _by_site(file: Any, unit_m: float, origin: Point) -> Place | None:
         anchor = Anchor(lat_deg, lon_deg, 0.0, turned_rad)
         east_m, north_m = origin[0] - x_m, origin[1] - y_m
         lat_deg, lon_deg, _ = anchor.to_geodetic(north_m, east_m, 0.0)
-        return Place(lat_deg, lon_deg, turned_rad, is_surveyed=False)
+        return ModelPlace(lat_deg, lon_deg, turned_rad, is_surveyed=False)
     return None
 
 

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from base_station.drawings.ifc_building import Building, Element, Level, name_of
+from base_station.drawings.ifc_building import ModelBuilding, ModelElement, ModelLevel, name_of
 from base_station.drawings.ifc_sections import (
     Solid,
     footprint,
@@ -38,15 +38,15 @@ _ORDER = ("room", "lift", "stairs")  # the later is drawn over the earlier
 
 class DrawnFloors(NamedTuple):
     shapes: list[DrawnShape]  # by the number of their floor; x and y in the frame of the file
-    levels: dict[int, Level]  # by number, 0: ground
+    levels: dict[int, ModelLevel]  # by number, 0: ground
     unused: tuple[str, ...]  # names of storeys that are no floor
     left_out: Counter[str]  # how many elements, by what they are
 
 
-class _Floor:
+class _DrawnFloor:
     """Shapes of one level, before they are put together."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: ModelLevel) -> None:
         self.level = level
         self.walls: list[Any] = []
         self.gaps: list[Any] = []
@@ -59,13 +59,13 @@ class _Floor:
 
     @property
     def is_used(self) -> bool:
-        """Whether people get there: a foundation has walls alone."""
+        """True if people get there: a foundation has walls alone."""
         return bool(self.doors or self.areas)
 
 
-def draw_floors(building: Building, solids: Mapping[int, Solid]) -> DrawnFloors:
+def draw_floors(building: ModelBuilding, solids: Mapping[int, Solid]) -> DrawnFloors:
     """Cut the solids of the elements, by the id of the part that has them."""
-    floors = [_Floor(level) for level in building.levels]
+    floors = [_DrawnFloor(level) for level in building.levels]
     left_out: Counter[str] = Counter()
     for element in building.elements:
         found = [solids[part.id()] for part in element.parts if part.id() in solids]
@@ -102,7 +102,7 @@ _UNUSED = {
 }
 
 
-def _add(floors: list[_Floor], element: Element, solids: list[Solid]) -> bool:
+def _add(floors: list[_DrawnFloor], element: ModelElement, solids: list[Solid]) -> bool:
     """Add an element to each floor that it is on; False if there is none."""
     match element.kind:
         case "stairs":
@@ -124,7 +124,9 @@ def _add(floors: list[_Floor], element: Element, solids: list[Solid]) -> bool:
     return is_added
 
 
-def _cut_by(floors: list[_Floor], element: Element, solid: Solid) -> Iterator[_Floor]:
+def _cut_by(
+    floors: list[_DrawnFloor], element: ModelElement, solid: Solid
+) -> Iterator[_DrawnFloor]:
     """Floors whose plane cuts a solid; near to its own floor no other is."""
     for row, floor in enumerate(floors):
         if not solid.bottom_m < floor.cut_m <= solid.top_m:
@@ -137,7 +139,7 @@ def _cut_by(floors: list[_Floor], element: Element, solid: Solid) -> Iterator[_F
                 yield floor
 
 
-def _add_gap(floors: list[_Floor], element: Element, solid: Solid) -> bool:
+def _add_gap(floors: list[_DrawnFloor], element: ModelElement, solid: Solid) -> bool:
     is_opening = all(part.is_a("IfcOpeningElement") for part in element.parts)
     is_added = False
     for floor in _cut_by(floors, element, solid):
@@ -157,7 +159,7 @@ def _add_gap(floors: list[_Floor], element: Element, solid: Solid) -> bool:
     return is_added
 
 
-def _add_stairs(floors: list[_Floor], solids: list[Solid]) -> bool:
+def _add_stairs(floors: list[_DrawnFloor], solids: list[Solid]) -> bool:
     """On each floor that the stairs reach, the ground that they cover."""
     bottom_m, top_m = min(one.bottom_m for one in solids), max(one.top_m for one in solids)
     if top_m - bottom_m < _STEPS_M:
@@ -173,7 +175,7 @@ def _add_stairs(floors: list[_Floor], solids: list[Solid]) -> bool:
     return bool(reached)
 
 
-def _shapes(floors: Mapping[int, _Floor]) -> Iterator[DrawnShape]:
+def _shapes(floors: Mapping[int, _DrawnFloor]) -> Iterator[DrawnShape]:
     walls = {number: united_walls(floor.walls) for number, floor in floors.items()}
     outlines = dict(zip(walls, outlines_of(list(walls.values())), strict=True))
     for number, floor in floors.items():

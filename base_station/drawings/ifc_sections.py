@@ -38,7 +38,7 @@ class Solid(NamedTuple):
         return float(self.vertices[:, 2].max())
 
 
-class Gap(NamedTuple):
+class WallGap(NamedTuple):
     """Rectangle of an opening, in axes of which the first lies along the wall."""
 
     along: Point  # unit vector
@@ -99,13 +99,13 @@ def footprint(solid: Solid) -> Any:
     return _library().MultiPoint(solid.vertices[:, :2]).convex_hull
 
 
-def gap_of(area: Any, along: Point) -> Gap:
+def gap_of(area: Any, along: Point) -> WallGap:
     """The rectangle around an opening's section."""
     points = _library().get_coordinates(area)
     x, y = along
     begin_m, end_m = np.sort(points @ (x, y))[[0, -1]]
     near_m, far_m = np.sort(points @ (-y, x))[[0, -1]]
-    return Gap(along, float(begin_m), float(end_m), float(near_m), float(far_m))
+    return WallGap(along, float(begin_m), float(end_m), float(near_m), float(far_m))
 
 
 def united_walls(areas: Sequence[Any]) -> Any:
