@@ -30,6 +30,10 @@ _MISSING = (
 _UNREADABLE = (
     "the IFC cannot be read; save it anew as IFC2x3, IFC4 or IFC4x3, or print its floors to PDF"
 )
+_CONTRADICTORY = (
+    "the IFC has references that its schema does not allow; check it and save it anew, or print "
+    "its floors to PDF"
+)
 _NO_STOREY = (
     "the IFC has no storeys (IfcBuildingStorey): export it with them, or print its floors to PDF"
 )
@@ -74,7 +78,10 @@ def read_ifc(content: bytes, options: Options) -> Draft:
     file = _opened(content)
     unit: Any = import_module("ifcopenshell.util.unit")
     unit_m = float(unit.calculate_unit_scale(file))
-    building = building_of(file, unit_m)
+    try:
+        building = building_of(file, unit_m)
+    except (AttributeError, AssertionError) as error:  # a reference that leads to another class
+        raise UserError(_CONTRADICTORY) from error
     if not building.levels:
         raise UserError(_NO_STOREY)
     drawn = draw_floors(building, _solids(file, building))

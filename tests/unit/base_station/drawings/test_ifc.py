@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from collections.abc import Callable
 from itertools import pairwise
@@ -200,6 +201,12 @@ def without_walls() -> bytes:
         (
             lambda: house_of_two_storeys().content().replace(b"'IFC4'", b"'IFC9'"),
             "cannot be read; save it anew as IFC2x3, IFC4 or IFC4x3",
+        ),
+        (
+            lambda: re.sub(
+                rb"(IFCLOCALPLACEMENT\()#\d+", rb"\1#1", house_of_two_storeys().content()
+            ),
+            "references that its schema does not allow",
         ),
         (without_storeys, "has no storeys"),
         (without_walls, "has no wall with a shape"),
