@@ -6,10 +6,14 @@ others those of their own documents (``documented_routes``).
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
 from msgspec.structs import replace
 
 from edge.calibration.correction import Correction
+from edge.samples import ImuBatch, SensorDescription
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
 from edge.sources.recording import RecordedTruth
@@ -49,19 +53,11 @@ def score_simulated(walk: str, tracker: str) -> Score:
 
 def track_simulated(walk: str, tracker: str) -> tuple[TrackBatch, RecordedTruth]:
     """Return the rows of a walk and the truth in their frame."""
-    calibrated = walk.endswith(CALIBRATED)
-    simulation = _open(walk.removesuffix(CALIBRATED), find_tracker(tracker).worn_on[0])
-    description = simulation.description
-    imus = [batch.imu for batch in simulation.batches()]
-    if calibrated:
-        calibration = calibration_of(simulation)
-        correction = Correction(calibration, description)
-        imus = [correction.push(imu) for imu in imus]
-        description = calibration.described(description)
-    tracking = make_tracker(tracker, description)
-    rows = join_rows([*map(tracking.push, imus), tracking.finish()])
+    sensed = _sense(walk, find_tracker(tracker).worn_on[0])
+    tracking = make_tracker(tracker, sensed.description)
+    rows = join_rows([*map(tracking.push, sensed.imus), tracking.finish()])
     t_s = np.arange(rows.t_ns[0] * 1e-9, rows.t_ns[-1] * 1e-9, _TRUTH_STEP_S)
-    motion = simulation.truth(t_s)
+    motion = sensed.simulation.truth(t_s)
     start_nb = np.zeros((3, 3))
     rotation_matrix(rows.quaternion_nb[0], start_nb)
     turn = start_nb @ motion.rotation_nb[0].T
@@ -69,6 +65,27 @@ def track_simulated(walk: str, tracker: str) -> tuple[TrackBatch, RecordedTruth]
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
     to_walk = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     return rows, RecordedTruth(t_s, motion.position_n_m @ to_walk.T)
+
+
+class _Sensed(NamedTuple):
+    """What the sensor of a walk gives, calibrated or not."""
+
+    simulation: Simulation
+    description: SensorDescription
+    imus: tuple[ImuBatch, ...]
+
+
+@lru_cache(maxsize=32)  # to simulate a walk takes three times as long as to track it
+def _sense(walk: str, worn_on: str) -> _Sensed:
+    simulation = _open(walk.removesuffix(CALIBRATED), worn_on)
+    description = simulation.description
+    imus = tuple(batch.imu for batch in simulation.batches())
+    if walk.endswith(CALIBRATED):
+        calibration = calibration_of(simulation)
+        correction = Correction(calibration, description)
+        imus = tuple(correction.push(imu) for imu in imus)
+        description = calibration.described(description)
+    return _Sensed(simulation, description, imus)
 
 
 def _open(walk: str, worn_on: str) -> Simulation:
