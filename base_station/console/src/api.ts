@@ -1,4 +1,4 @@
-/** The station's REST API, as far as the console uses it. */
+/** The part of the station's REST API that the console uses. */
 import type * as answers from "./answers";
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";

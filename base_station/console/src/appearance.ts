@@ -1,4 +1,4 @@
-/** How the page looks at this console: the theme and keys, kept in this browser. */
+/** Appearance at this console: theme and keys, kept in this browser. */
 import { effect, signal } from "@preact/signals";
 import { kept, keptSwitch } from "./kept";
 

@@ -1,4 +1,4 @@
-/** How good an incident's positions were, as the station assesses it and as people read it. Pure. */
+/** The assessment of an incident's positions, in words and usual units.  Pure. */
 import { t } from "./language/translate";
 import type * as answers from "./answers";
 import { length, listed, number, quantity } from "./language/measures";

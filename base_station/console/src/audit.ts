@@ -1,4 +1,4 @@
-/** What people did, from the audit log as the station keeps it, in words and usual units.  Pure. */
+/** Entries of the audit log in words and usual units.  Pure. */
 import { knownLabel, type PlainKey, t } from "./language/translate";
 import { dateAndTime, duration, floorName } from "./format";
 import { degrees, length, listed, number } from "./language/measures";

@@ -1,4 +1,4 @@
-/** Numbers as a tired person reads them.  Pure. */
+/** Format of numbers, short and with units.  Pure. */
 import { floorNames, clock, date, degrees, length, listed, number, quantity, share } from "./language/measures";
 import { knownLabel, label, t } from "./language/translate";
 import type {

@@ -1,4 +1,4 @@
-/** How the station is asked over HTTP, and how it refuses. */
+/** Requests to the station over HTTP, and its errors. */
 import { signal } from "@preact/signals";
 import { t } from "./language/translate";
 

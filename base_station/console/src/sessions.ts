@@ -1,4 +1,4 @@
-/** Who is logged in, what is live, and which replay is watched. */
+/** The logged-in user, the live picture, and the open replay. */
 import { batch, computed, effect, signal } from "@preact/signals";
 import { t } from "./language/translate";
 import * as api from "./api";
@@ -20,14 +20,14 @@ export interface Replay {
 }
 
 export const user = signal<api.Me | null>(null);
-/** The station has ended this login: what was being done waits, unseen, for the same person. */
+/** The station has ended this login: open work waits, hidden, for the same user. */
 export const waiting = signal(false);
 /** The page was opened while its station did not answer. */
 export const stationAway = signal(false);
 export const live = signal<Session | null>(null);
 export const replay = signal<Replay | null>(null);
 
-/** The picture on the screen: the replay while there is one, else what is live. */
+/** The picture on the screen: that of the open replay, otherwise the live one. */
 export const picture = computed(() => (replay.value?.session ?? live.value)?.picture ?? null);
 export const isPast = computed(() => picture.value !== null && picture.value.replay.value !== null);
 /** Whether there is a live picture behind the replay. */
@@ -97,7 +97,7 @@ export function begin(me: api.Me): void {
 
 let stopWatching: () => void = () => undefined;
 
-/** The station lets nobody look on any more; without a word it would look like a fault. */
+/** The station has closed the view; without a message it would look like a fault. */
 function loginEnded(): void {
   wait();
   notice.value = t("login.ended");
@@ -151,7 +151,7 @@ async function replayOn(before: Replay): Promise<void> {
   replay.value = { ...before, id };
 }
 
-/** The id of a replay of the same incident that goes on from the place that is on the screen. */
+/** The id of a replay of the same incident that continues from the time on the screen. */
 async function replayAt({ id, session, incident }: Replay): Promise<string> {
   const shown = session.picture.replay.peek();
   const place =
@@ -179,7 +179,7 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
   }
 }
 
-/** The notice becomes what the station says was done. */
+/** The notice shows the result that the station reports. */
 function resolve(key: string, said: string): Promise<void> {
   let latest = said;
   return followUp(key, {
@@ -193,7 +193,7 @@ function resolve(key: string, said: string): Promise<void> {
   });
 }
 
-/** Behind the login form, until the same person is back: the station knows nobody here any more. */
+/** Behind the login form, until the same user is back: the station has no session here any more. */
 function wait(): void {
   stopWatching();
   replay.peek()?.session.close();
@@ -218,7 +218,7 @@ function replayEnded(): void {
   notice.value = t("past.ended");
 }
 
-/** `muster base replay` shows the past where other stations show what is live. */
+/** `muster base replay` shows the past in place of the live picture. */
 export const liveIsPast = computed(() => live.value !== null && live.value.picture.replay.value !== null);
 
 /** The replay that such a station was started for: there is nothing behind it. */

@@ -1,4 +1,4 @@
-/** Alarms and a lost station are heard, unless somebody switched that off at this console. */
+/** Sounds of alarms and of a lost station, unless switched off at this console. */
 import { effect, signal } from "@preact/signals";
 import type { Picture } from "./live/picture";
 import { NO_TONES_YET, nextTone, type Tone } from "./live/alarmTones";

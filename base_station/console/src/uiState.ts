@@ -1,4 +1,4 @@
-/** What the person looks at: the chosen unit and floor, the open dialog, what was last said. */
+/** State of the user interface: chosen unit and floor, open dialog, last notice. */
 import { signal } from "@preact/signals";
 import type { AlarmView } from "./wire";
 

@@ -1,4 +1,4 @@
-/** What was just entered by radio, and can be undone with one press for a while. */
+/** The last entry by radio, which can be undone with one press for a while. */
 import { signal } from "@preact/signals";
 import { t } from "./language/translate";
 import * as api from "./api";

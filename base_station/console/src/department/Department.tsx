@@ -1,4 +1,4 @@
-/** The whole page: who is not logged in sees the form alone. */
+/** The whole page; without a login only the form. */
 import { label, t } from "../language/translate";
 import { LANGUAGE_CHOICES, languageChoice, type LanguageChoice } from "../language/choices";
 import { Login } from "../ui/Login";

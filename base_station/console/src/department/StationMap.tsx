@@ -1,4 +1,4 @@
-/** Stations whose site has a geodetic anchor, with who needs help there. */
+/** Map of stations whose site has a geodetic anchor, with people in need of help. */
 import { far, length } from "../language/measures";
 import { t } from "../language/translate";
 import type { DepartmentView, ReportingStationView } from "./answers";

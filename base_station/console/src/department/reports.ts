@@ -1,4 +1,4 @@
-/** What the department knows, asked for once a second, and what of it is wanted. */
+/** Reports of the department, requested once a second, and the filters on them. */
 import { effect, signal } from "@preact/signals";
 import { ApiError, call, id, PAGE } from "../http";
 import { t } from "../language/translate";

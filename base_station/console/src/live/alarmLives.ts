@@ -1,4 +1,4 @@
-/** The list of all alarms with their lives: which of them are shown, and what became of each.  Pure. */
+/** The list of all alarms: filters, and the transitions of each.  Pure. */
 import type { AlarmHistoryEntry, AlarmWithLife, ResolutionReason } from "../answers";
 import { label, t } from "../language/translate";
 import { duration, minutes, MISSED_CHECK_IN, percent, temperature } from "../format";
@@ -58,7 +58,7 @@ export function changeWord(changes: readonly AlarmHistoryEntry[], at: number): s
   return t("alarm_list.now_level", { level: change.level });
 }
 
-/** By whom or what, with the reason and the note: "mia: False alarm, stood on a ladder". */
+/** User or rule, with the reason and the note: "mia: False alarm, stood on a ladder". */
 export function byWords({ by, reason, note }: AlarmHistoryEntry): string {
   const why = [reason === "" ? "" : label("alarm_reason", reason), note].filter((word) => word !== "");
   return why.length === 0 ? by : `${by}: ${why.join(", ")}`;

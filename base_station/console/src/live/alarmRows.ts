@@ -98,12 +98,12 @@ function whatHappened(alarm: AlarmView, count: number): string {
   return t("alarm.flood_other", { count, alarm: alarmLabel(alarm) });
 }
 
-/** Those that nobody has acknowledged. */
+/** Unacknowledged alarms. */
 export function raisedOf({ alarms }: AlarmRow): AlarmView[] {
   return alarms.filter((alarm) => alarm.state === "raised");
 }
 
-/** Who acknowledged them, each once: "mia, chief". */
+/** Users who acknowledged them, each once: "mia, chief". */
 export function takenBy({ alarms }: AlarmRow): string {
   return listed([...new Set(alarms.map((alarm) => alarm.by))]);
 }

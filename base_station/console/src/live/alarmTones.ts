@@ -1,4 +1,4 @@
-/** What is to be sounded of the picture: new alarms at once, and what nobody takes again and again.  Pure. */
+/** Tones of a picture: new alarms at once, unacknowledged ones again and again.  Pure. */
 import type { AlarmView } from "../wire";
 
 export type Tone = "high" | "medium" | "low" | "link";
@@ -12,7 +12,7 @@ export const REPEAT_AFTER_MS: Record<Tone, number> = { high: 10_000, link: 10_00
 /** Longer than any burst: a repeat does not run into another. */
 const BURST_MS = 4_000;
 
-/** What has been sounded already. */
+/** Tones played already. */
 export interface ToneState {
   raisedMs: ReadonlyMap<string, number>; // of alarms, when they were raised last
   lastMs: Partial<Record<Tone, number>>;

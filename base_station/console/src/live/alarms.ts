@@ -1,4 +1,4 @@
-/** Which alarms are open, in the order in which they want a person. */
+/** Open alarms in the order of their urgency. */
 import type { AlarmView, UnitView } from "../wire";
 import { alarmLabel, MISSED_CHECK_IN } from "../format";
 import { listed } from "../language/measures";

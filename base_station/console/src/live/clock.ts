@@ -1,4 +1,4 @@
-/** Station time between two messages: the last it said, carried on by the console's own clock. */
+/** Station time between two messages: the last received, advanced by the console's own clock. */
 
 export class StationClock {
   private stationMs = 0;

@@ -1,4 +1,4 @@
-/** What an incident would be closed over: open alarms of units, and people inside.  Pure. */
+/** Obstacles to closing an incident: open alarms of units, and people inside.  Pure. */
 import type { Despite } from "../api";
 import type { AlarmView, UnitView } from "../wire";
 import { alarmLabel } from "../format";

@@ -1,4 +1,4 @@
-/** What units were told, as the screen needs it.  Pure. */
+/** Commands to units, for display.  Pure. */
 import type { CommandView, DeliveryState, DeliveryView, IncidentView, UnitView } from "../wire";
 import { clockTime } from "../format";
 import { listed } from "../language/measures";
@@ -36,7 +36,7 @@ export function stands(command: CommandView): boolean {
   return command.kind === "evacuate" && command.ended_ms === null;
 }
 
-/** Who has not answered an order that can be sent again. */
+/** Members without an answer to an order that can be sent again. */
 export function unanswered(command: CommandView): DeliveryView[] {
   if (!command.asks_wearer || command.ended_ms !== null) return [];
   return command.units.filter((one) => one.state !== "acknowledged");
@@ -108,7 +108,7 @@ export function mayAnswerByRadio(command: CommandView, delivery: DeliveryView): 
   return command.asks_wearer || (command.notifies_wearer && delivery.state !== "notified");
 }
 
-/** The crews that somebody on duty belongs to. */
+/** Crews with members on duty. */
 export function crewsOf(units: Iterable<UnitView>): string[] {
   const crews = [...units].map((unit) => unit.person?.crew ?? "");
   return [...new Set(crews)].filter((crew) => crew !== "").sort();
@@ -116,7 +116,7 @@ export function crewsOf(units: Iterable<UnitView>): string[] {
 
 export type Target = { everyone: true } | { crew: string } | { floor: number } | { unit_id: string };
 
-/** Whom an order would go to, as the station decides it. */
+/** Recipients of an order, as the station decides them. */
 export function recipients(target: Target, units: readonly UnitView[]): UnitView[] {
   const ours = units.filter((unit) => unit.registered);
   if ("unit_id" in target) return ours.filter((unit) => unit.unit_id === target.unit_id);
@@ -133,7 +133,7 @@ function mayBeOn({ person, position }: UnitView, floor: number): boolean {
   return person !== null && (on === null || on === floor);
 }
 
-/** The floors on which somebody is known to be, the highest first. */
+/** Floors with people on them, the highest first. */
 export function floorsOf(units: Iterable<UnitView>): number[] {
   const floors = [...units].map((unit) => unit.position?.floor ?? null);
   return [...new Set(floors)].filter((floor) => floor !== null).sort((a, b) => b - a);
@@ -161,7 +161,7 @@ export function commandWord(command: CommandView): string {
   return command.text === "" ? word : t("order.with_text", { order: word, text: command.text });
 }
 
-/** How far it has got with somebody, in words. */
+/** Progress of an order with one member, in words. */
 export function deliveryWord(command: CommandView, delivery: DeliveryView): string {
   return locateWord(command, delivery) ?? stateWord(shownState(command, delivery));
 }

@@ -1,4 +1,4 @@
-/** Dispatches in words: what the dispatch centre has reported.  Pure. */
+/** Reports of the dispatch centre in words.  Pure. */
 import type { CallSignAnswer } from "../answers";
 import type { DispatchView, IncidentView } from "../wire";
 import { dateAndTime, zone } from "../format";

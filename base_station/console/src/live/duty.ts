@@ -1,4 +1,4 @@
-/** PAR as the screen needs it: who is due when, crew by crew.  Pure. */
+/** PAR for display: due times of members, crew by crew.  Pure. */
 import type { DutyView, IncidentView, UnitView } from "../wire";
 import { clockTime } from "../format";
 import { t } from "../language/translate";
@@ -18,7 +18,7 @@ export function parOf(duty: DutyView, incident: IncidentView | null, nowMs: numb
   return { state: duty.confirmed === "not_yet" ? "unconfirmed" : "green", leftMs };
 }
 
-/** How and when the PAR was confirmed last, and who entered it. */
+/** Last confirmation of the PAR: kind, time and user. */
 export function confirmationWords({ confirmed, checked_in_ms, checked_in_by }: DutyView): string {
   if (checked_in_ms === null || confirmed === "not_yet") return t("confirmation.not_yet_confirmed");
   const time = clockTime(checked_in_ms);

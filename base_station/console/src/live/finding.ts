@@ -1,4 +1,4 @@
-/** Which members the list shows, and in which order.  Pure. */
+/** Search and order of the list of members.  Pure. */
 import type { UnitView } from "../wire";
 import { onScene, partOf, type Part } from "./headcount";
 import { displayName, isCasualty, type Place } from "./urgency";

@@ -1,9 +1,9 @@
-/** Where to go in the past: from alarm to alarm, with a little of what came before.  Pure. */
+/** Targets of seeks in a replay: from alarm to alarm, with a short lead.  Pure. */
 import type { AlarmSentence } from "./alarmText";
 
 /** An alarm is better seen coming. */
 export const LEAD_MS = 5_000;
-/** Who goes back twice in short time wants the alarm before. */
+/** A second press within this time seeks the alarm before. */
 const PATIENCE_MS = 3_000;
 
 interface Raised {

@@ -1,4 +1,4 @@
-/** Ways to a member who is down: what the station says of them while somebody looks, and who is guided. */
+/** Routes to a member who is down, requested while they are shown, and the guided rescuer. */
 import { signal } from "@preact/signals";
 import * as api from "../api";
 import type { UnitView } from "../wire";
@@ -66,7 +66,7 @@ async function ask(unitId: string): Promise<void> {
   }
 }
 
-/** Unless somebody looks elsewhere by now. */
+/** Unless another member is shown by now. */
 function say(unitId: string, answer: Partial<Rescue>, chosen: string | null): void {
   const now = rescue.peek();
   if (now?.unitId === unitId && now.rescuerId === chosen) rescue.value = { ...now, ...answer };
@@ -83,7 +83,7 @@ export function routeWords(route: api.Route): string {
   return route.crosses_walls ? t("route.crosses_walls", { route: words }) : words;
 }
 
-/** "38 m ± 4 m"; of a straight line nobody knows how far it is to walk. */
+/** "38 m ± 4 m"; the walking distance of a straight line is unknown. */
 export function wayWords({ known, distance_m, uncertainty_m }: api.Route): string {
   const words = t("route.length", {
     distance: length(distance_m, 0),

@@ -1,4 +1,4 @@
-/** Who needs attention first, and a list that does not jump while somebody reads it.  Pure. */
+/** Urgency of members, and a list that does not jump while it is read.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
 import { MISSED_CHECK_IN, SWITCHED_OFF } from "../format";
 
@@ -46,7 +46,7 @@ export function nameAmong(unit: UnitView, units: readonly UnitView[]): string {
   return namesakes.length > 1 ? `${name} (${unit.unit_id})` : name;
 }
 
-/** Whether a member is down: needs somebody, and is not only overdue. */
+/** Whether a member is down: in need of help, and not only overdue. */
 export function isCasualty({ rank }: Place): boolean {
   return rank <= IN_NEED;
 }
@@ -91,7 +91,7 @@ export function arrange(
   );
 }
 
-/** Of whom nobody can tell how they are. */
+/** Members whose state is unknown. */
 function firstOfAll(unitId: string): Place {
   return { unitId, name: unitId, urgency: "immediate", rank: MAYDAY, calmSinceMs: null };
 }

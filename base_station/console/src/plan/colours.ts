@@ -1,4 +1,4 @@
-/** The page's colours for what is drawn on a canvas. */
+/** The page's colours for drawings on a canvas. */
 
 export interface Colours {
   text: string;

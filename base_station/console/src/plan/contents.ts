@@ -1,4 +1,4 @@
-/** What a plan holds, in words.  Pure. */
+/** The content of a plan in words.  Pure. */
 import type { Plan } from "../wire";
 import { t } from "../language/translate";
 

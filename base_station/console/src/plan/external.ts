@@ -1,4 +1,4 @@
-/** Words for people and markers of other teams.  Pure. */
+/** Texts of people and markers of other teams.  Pure. */
 import { duration } from "../format";
 import { listed } from "../language/measures";
 import type { ExternalMarkerView } from "../wire";

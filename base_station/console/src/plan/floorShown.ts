@@ -1,4 +1,4 @@
-/** Which floor is shown when somebody begins to look at a picture. */
+/** The initial floor of a picture. */
 import { effect } from "@preact/signals";
 import { floor, type FloorChoice } from "../uiState";
 import type { Picture } from "../live/picture";

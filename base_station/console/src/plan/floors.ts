@@ -1,4 +1,4 @@
-/** Which floors there are and who is on each.  Pure. */
+/** Floors and the people on each.  Pure. */
 import { urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../uiState";
 import type { AlarmView, Plan, PositionView, UnitView } from "../wire";

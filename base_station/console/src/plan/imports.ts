@@ -1,4 +1,4 @@
-/** What was brought into the incident on the screen: tracks and photographs, by time. */
+/** Imported files of the shown incident: tracks and photographs, by time. */
 import { effect, signal } from "@preact/signals";
 import { importedFiles, importedTracks } from "../importedFiles";
 import type { ImportedTracks } from "../importedFiles";

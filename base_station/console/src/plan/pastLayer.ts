@@ -1,4 +1,4 @@
-/** Draws the trails that were asked for beside what is drawn anyway. */
+/** Layer of requested trails beside the live ones. */
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";
 import VectorLayer from "ol/layer/Vector";

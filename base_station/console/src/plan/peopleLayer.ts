@@ -1,4 +1,4 @@
-/** Everybody on the plan: layers whose features follow the picture. */
+/** People on the plan: layers whose features follow the picture. */
 import type { Extent } from "ol/extent";
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";

@@ -1,4 +1,4 @@
-/** Draws where people are with 95 % probability: an ellipse, or what the walls leave to them. */
+/** Layer of the 95 % regions of people: an ellipse, or the part within the walls. */
 import type { Coordinate } from "ol/coordinate";
 import { boundingExtent } from "ol/extent";
 import Feature from "ol/Feature";

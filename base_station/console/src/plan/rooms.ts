@@ -1,4 +1,4 @@
-/** In which room of the plan somebody is, as far as that can be said.  Pure. */
+/** The room of a person on the plan, as far as it is certain.  Pure. */
 import type { Geometry } from "geojson";
 import type { Plan, PositionView } from "../wire";
 import { t } from "../language/translate";

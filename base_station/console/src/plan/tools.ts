@@ -1,4 +1,4 @@
-/** What is being done on the plan: one thing at a time, begun with a button, ended with Escape. */
+/** Tools of the plan: one at a time, begun with a button, ended with Escape. */
 import { signal } from "@preact/signals";
 import { pane } from "../uiState";
 

@@ -1,4 +1,4 @@
-/** What a side section needs to know of one person.  Pure. */
+/** Data of one person for the side section.  Pure. */
 import { initials, isFloorLikely } from "../format";
 import { displayName, urgencyOf, type Urgency } from "../live/urgency";
 import { isOld } from "../plan/ellipse";

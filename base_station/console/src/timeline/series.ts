@@ -1,4 +1,4 @@
-/** What a timeline shows, and which part of the time.  Pure. */
+/** Series of a timeline, and its part of the time.  Pure. */
 import type { TimelineAnswer, TimelineColumn } from "../answers";
 import { duration, floorName, percent } from "../format";
 import { degrees, length, number } from "../language/measures";

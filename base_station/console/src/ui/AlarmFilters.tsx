@@ -91,7 +91,7 @@ function Choice({ label, value, options, choose }: ChoiceProps) {
   );
 }
 
-/** Of whom there are alarms, by the name of whoever wears the unit. */
+/** Units with alarms, by the name of the wearer. */
 function membersOf(all: readonly AlarmWithLife[], picture: Picture): Option[] {
   const units = picture.allUnits();
   const names = new Map(units.map((unit) => [unit.unit_id, nameAmong(unit, units)]));

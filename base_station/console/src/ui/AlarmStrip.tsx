@@ -46,7 +46,7 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
       </div>
       <div class="alarm-room" ref={zone}>
         <Rows
-          key={listed ? "listed" : "zone"} // what is only listed now is not announced anew
+          key={listed ? "listed" : "zone"} // a listed alarm is not announced again
           rows={listed ? singleRows(open) : rows.slice(0, room)}
           kind={listed ? "listed" : "zone"}
           picture={picture}

@@ -85,7 +85,7 @@ function Console({ shown }: { shown: Picture }) {
   );
 }
 
-/** What stands between the banners and what is said last. */
+/** The part between the banners and the notice. */
 function Desk({ shown, kind }: { shown: Picture; kind: "live" | "replay" }) {
   return (
     <>
@@ -114,7 +114,7 @@ function Desk({ shown, kind }: { shown: Picture; kind: "live" | "replay" }) {
   );
 }
 
-/** What reaches who is looking elsewhere: sounds, and the page's title. */
+/** Signals for a user who looks elsewhere: sounds, and the page's title. */
 function useAttention(): void {
   const watched = waiting.value ? undefined : live.value?.picture;
   useEffect(() => {
@@ -124,7 +124,7 @@ function useAttention(): void {
   }, [watched]);
 }
 
-/** Nothing lies over the login form; who comes back goes on where the login ended. */
+/** Nothing covers the login form; a user who returns continues where the login ended. */
 function useWaiting(): void {
   useLayoutEffect(() => {
     if (!waiting.value) return undefined;

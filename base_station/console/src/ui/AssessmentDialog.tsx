@@ -23,7 +23,7 @@ import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 
-/** What was promised at the time, and how it stands up to what is known since. */
+/** Accuracy stated at the time, compared with the smoothed trails. */
 export function AssessmentDialog() {
   const incident = assessed.value;
   const report = useSignal<Assessment | "asked" | "failed">("asked");
@@ -129,7 +129,7 @@ function share(part: number | null): string {
   return part === null ? NOTHING : percent(part);
 }
 
-/** How far the station itself trusted each place, as it said at the time. */
+/** The trust light of each place at the time. */
 function Lights({ report }: { report: Assessment }) {
   return (
     <table class="assessment stacked">

@@ -13,7 +13,7 @@ interface Props {
   picture: Picture;
 }
 
-/** Who works in the incident that is shown from now on: a crew or a unit of another one, or of none. */
+/** Assignment of a crew or a unit of another incident, or of none, to the shown one. */
 export function AssignForm({ incident, picture }: Props) {
   const whom = useSignal("");
   const once = useSinglePress();

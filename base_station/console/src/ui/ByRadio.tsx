@@ -7,14 +7,14 @@ import { ConfirmButton } from "./ConfirmButton";
 interface Props {
   label: string;
   about?: string; // read aloud, where the label alone could be anybody's
-  members: readonly UnitView[]; // whose answers it enters
+  members: readonly UnitView[]; // members whose answers it enters
   question: string;
-  always?: boolean; // it asks though nobody is in alarm
+  always?: boolean; // it asks also without an alarm
   kind?: string; // of button
   onConfirm: (press: MouseEvent) => void;
 }
 
-/** Enters an answer by radio.  Over somebody in alarm it asks first, and names the alarms. */
+/** Enters an answer by radio.  For a member in alarm it asks first, and names the alarms. */
 export function ByRadio({ label, about, members, question, always = false, kind, onConfirm }: Props) {
   const needy = inAlarm(members, shown.value?.alarms.value ?? new Map());
   if (needy.length > 0 || always) {

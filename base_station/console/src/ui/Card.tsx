@@ -26,12 +26,12 @@ interface Props {
   unitId: string;
   urgency: Urgency;
   place: number; // in the list
-  brief: boolean; // whoever is well is said in short
+  brief: boolean; // a short card for a member who is well
   line: boolean; // whoever is not chosen has one line
   picture: Picture;
 }
 
-/** All of it is pressed to choose its person; by keys, and to who listens, its head is the button. */
+/** A press anywhere chooses the person; for keys and screen readers its head is the button. */
 export const Card = memo(({ unitId, urgency, place, brief, line, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
   const chosen = selectedUnit.value === unitId;
@@ -112,7 +112,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
   );
 }
 
-/** What is recorded of this person: above what can be done, which stays in sight on low screens. */
+/** Records of this person: above the actions, which stay in sight on low screens. */
 function ToRecords({ unit }: { unit: UnitView }) {
   const show = (name: "timeline" | "alarm_reason") => () => openDialog(name, unit.unit_id);
   return (
@@ -156,7 +156,7 @@ function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
   return card;
 }
 
-/** Heard, placed and known: what there is to say of it is usual. */
+/** With contact, a position and a name: nothing unusual to show. */
 function isUsual({ position, person, status, link, cloned, switched_off }: UnitView): boolean {
   const known = position !== null && person !== null && status !== null;
   return known && link === "live" && !cloned && !switched_off;
@@ -210,7 +210,7 @@ function OpenAlarms({ unit, picture }: { unit: UnitView; picture: Picture }) {
   );
 }
 
-/** Which the mark beside the name says already, and by how much. */
+/** Shown already, with its amount, by the mark beside the name. */
 function saysOverdue(alarm: AlarmView, unit: UnitView): boolean {
   return alarm.rule === format.MISSED_CHECK_IN && !isOfAnother(alarm, unit);
 }
@@ -230,7 +230,7 @@ function Trust({ unit }: { unit: UnitView }) {
   );
 }
 
-/** The unit has no light and no sounder: its wearer does not notice what is sent to it. */
+/** The unit has no light and no sounder: its wearer does not notice orders. */
 function NotNotifiable() {
   return (
     <p class="not-notifiable" title={t("card.cannot_be_notified_hint")}>
@@ -253,7 +253,7 @@ function NotReady({ unit: { preflight, registered }, chosen }: { unit: UnitView;
   );
 }
 
-/** Somebody is not seen, and what is shown may be the other. */
+/** One of two devices is hidden, and the shown one may be the wrong one. */
 function TwoMachines() {
   return (
     <p class="trust red">

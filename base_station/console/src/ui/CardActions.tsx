@@ -9,7 +9,7 @@ import type { UnitView } from "../wire";
 import { t } from "../language/translate";
 import { ByRadio } from "./ByRadio";
 
-/** What can be done for one person; only on the card that was chosen, so that cards stay calm. */
+/** Actions for one person; only on the chosen card, so that cards stay calm. */
 export function CardActions({ unit }: { unit: UnitView }) {
   const { unit_id: unitId, duty } = unit;
   const name = displayName(unit);
@@ -61,7 +61,7 @@ function incidentFor(unitId: string): string | null {
   return shown.incident.value?.incident_id ?? null;
 }
 
-/** Stops it where it is on; asks first where it cannot do what it is for. */
+/** Stops an active signal; asks first where the unit has no output for it. */
 function Locate({ unit: { unit_id: unitId, can_be_notified } }: { unit: UnitView }) {
   const picture = live.value?.picture;
   const commands = picture ? current(picture.commands.value.values(), picture.incident.value) : [];

@@ -4,7 +4,7 @@ import { commandWord, current, newestFirst, progress, stands } from "../live/com
 import type { Picture } from "../live/picture";
 import { t } from "../language/translate";
 
-/** What a commander can tell everyone with two presses, and how far that has got. */
+/** Orders to everyone with two presses, and their progress. */
 export function CommandBar({ picture }: { picture: Picture }) {
   const commands = current(picture.commands.value.values(), picture.incident.value);
   const open = newestFirst(commands).filter((command) => command.open || stands(command));

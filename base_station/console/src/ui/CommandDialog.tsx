@@ -34,7 +34,7 @@ const HINTS = {
 
 const EVERYONE = "everyone";
 
-/** Asks whom it is for before anything is sent, and shows what became of it. */
+/** Dialog for the recipients of a command, and its result. */
 export function CommandDialog({ kind }: { kind: api.CommandKind }) {
   const sentHere = useSignal<readonly string[]>([]);
   const picture = live.value?.picture;

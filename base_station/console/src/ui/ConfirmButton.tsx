@@ -5,14 +5,14 @@ import { Confirm, useFocusBack } from "./Confirm";
 
 interface Props {
   label: string;
-  about?: string; // what it would be done to, where the label alone could be any of several
+  about?: string; // object of the action, where several buttons have the same label
   question: string;
-  yes?: string; // where the label is too long to be said again
-  focused?: boolean; // to begin with: it comes in place of what was pressed
+  yes?: string; // where the label is too long to be repeated
+  focused?: boolean; // initially: it replaces the pressed button
   onConfirm: (press: MouseEvent) => void;
 }
 
-/** A button for what cannot be taken back: the first press only asks. */
+/** A button of an action that cannot be undone: the first press only asks. */
 export function ConfirmButton({
   label,
   about = "",
@@ -29,7 +29,7 @@ export function ConfirmButton({
   if (asked.value) {
     return (
       <Confirm
-        key={question} // what has changed since is another question
+        key={question} // changed content is another question
         question={question}
         yes={yes}
         onYes={(press) => {

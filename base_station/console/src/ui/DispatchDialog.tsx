@@ -14,7 +14,7 @@ import { TimesFields, timesOf } from "./TimesFields";
 import { useSinglePress } from "./useGuardedPress";
 import { fields, useLoaded } from "./useLoaded";
 
-/** What the dispatch centre has reported, and how an incident is opened from it. */
+/** Reports of the dispatch centre, and opening an incident from one. */
 export function DispatchDialog() {
   const shown = picture.value;
   const number = dialogDispatch.value;

@@ -3,7 +3,7 @@ import type { JSX } from "preact";
 
 interface Done {
   say: () => void;
-  /** Once what stands in the form is another. */
+  /** Called once the form's content has changed. */
   unsay: () => void;
   words: JSX.Element;
 }

@@ -9,7 +9,7 @@ interface Props {
   marks: ReadonlySignal<readonly EdgeMark[]>;
 }
 
-/** Arrows at the plan's edge towards members in danger who are outside the view; a press shows them. */
+/** Arrows at the plan's edge towards members in danger outside the view; a press shows them. */
 export function Edges({ picture, marks }: Props) {
   if (marks.value.length === 0) return null;
   const show = (unitId: string) => find(unitId, picture.unit(unitId)?.peek().position?.floor ?? null);

@@ -13,7 +13,7 @@ import { useSinglePress } from "./useGuardedPress";
 import { fields, useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
 
-/** Who of the units is enrolled; for an administrator to enrol another. */
+/** Enrolled units; an administrator enrols others. */
 export function EnrolmentsDialog() {
   const [enrolled, again] = useLoaded(api.enrolments);
   const made = useSignal<api.ShownEnrolment | null>(null);

@@ -7,15 +7,15 @@ interface Props {
   what: string;
   /** A list holds nothing but entries. */
   as?: "div" | "li";
-  /** Is told in place of being shown here. */
+  /** Receives the error in place of being shown here. */
   onFault?: (fault: string) => void;
   children: ComponentChildren;
 }
 
-/** How long after it failed it is tried again: what it shows may have changed. */
+/** Time until a failed part is drawn again: its data may have changed. */
 const AGAIN_MS = 5_000;
 
-/** What fails within is named on the screen in its place, and takes nothing beside it along. */
+/** A failing part is named on the screen in its place, and affects no other part. */
 export class ErrorBoundary extends Component<Props, { fault: string | null }> {
   override state = { fault: null };
   private timer = 0;

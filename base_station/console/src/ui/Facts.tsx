@@ -21,7 +21,7 @@ const LINK_LEVEL: Record<Link, string> = {
   lost: "critical",
 };
 
-/** What is known of one person, each with its name. */
+/** State of one person as names and values. */
 export function Facts({ unit, picture }: Props) {
   const now = picture.nowMs.value;
   return (
@@ -36,7 +36,7 @@ export function Facts({ unit, picture }: Props) {
   );
 }
 
-/** The same of somebody who is well, in one line. */
+/** State of a person who is well, in one line. */
 export function BriefFacts({ unit, picture }: Props) {
   const { position, ambient_degc, ambient_ms } = unit;
   if (position === null) return null;
@@ -86,7 +86,7 @@ function Where({ unit, picture }: Props) {
 interface HeardProps {
   unit: UnitView;
   now: number;
-  silent: boolean; // the station cannot be heard, so nobody knows of the unit's link
+  silent: boolean; // no contact with the station, so the unit's link is unknown
 }
 
 function Heard({ unit, now, silent }: HeardProps) {
@@ -141,7 +141,7 @@ function Battery({ status, low }: { status: StatusView | null; low: boolean }) {
   );
 }
 
-/** Where they are worn, and what makes positions of their samples. */
+/** Places of the sensors on the body, and the tracker of their samples. */
 export function Sensors({ unit: { sensors, tracker } }: { unit: UnitView }) {
   if (tracker === "") return null;
   return (

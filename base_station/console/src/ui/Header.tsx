@@ -54,7 +54,7 @@ function IncidentTitle({ picture }: { picture: Picture }) {
   );
 }
 
-/** The number of the dispatch, which opens what was reported. */
+/** The number of the dispatch, which opens its report. */
 function DispatchNumber({ number }: { number: string }) {
   return (
     <>
@@ -80,7 +80,7 @@ function HealthLight({ picture }: { picture: Picture }) {
   const health = picture.health.value;
   if (health === null) return null;
   const lost = picture.link.value.kind !== "up";
-  const [first, ...more] = lost ? [t("health.unknown")] : problemsOf(health); // what it said last may be over
+  const [first, ...more] = lost ? [t("health.unknown")] : problemsOf(health); // the last report may be outdated
   const sentence = first ?? t("health.ok");
   const others = more.length === 0 ? "" : `+${more.length}`;
   return (

@@ -1,4 +1,4 @@
-/** Few icons, each always beside its word. */
+/** Icons, each always beside its text. */
 
 const PATHS = {
   walking: "M13 4a2 2 0 1 0 0-.01M10 22l2-7-3-3 1-5 4 2 2 3h3M9 7l-3 2v4M12 15l4 3v4",

@@ -1,7 +1,7 @@
 import { t } from "../language/translate";
 import { areImportsShown, imports, importsFailed } from "../plan/imports";
 
-/** Whether what was brought in is drawn, with the line it is drawn in; nothing where there is none. */
+/** Switch for drawing imported files, with a sample of their line; nothing without imports. */
 export function ImportsShown() {
   if (importsFailed.value) return <small>{t("imports.failed")}</small>;
   const count = imports.value.length;

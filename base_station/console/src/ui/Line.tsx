@@ -11,7 +11,7 @@ import { placeWords } from "./Facts";
 import { activityIcon, Icon } from "./Icon";
 import { ParMark } from "./ParClock";
 
-/** A member in one line: who, what is the matter or else where, and when the PAR is due. */
+/** A member in one line: name, alarm or else place, and time of the PAR. */
 export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const name = displayName(unit);
   const words = whatAndWhere(unit, picture);

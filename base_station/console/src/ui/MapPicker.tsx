@@ -12,7 +12,7 @@ interface MapPickerProps {
   pick(at: LatLon): void;
 }
 
-/** The base map to click on; what is clicked is latitude and longitude. */
+/** The base map for choosing latitude and longitude by a click. */
 export function MapPicker({ map, marks, pick }: MapPickerProps) {
   const zoom = useSignal<number>(1);
   return (

@@ -1,7 +1,7 @@
 import { notice } from "../uiState";
 import { t } from "../language/translate";
 
-/** What was last said; in a dialog it stands in it, as nothing behind a dialog can be read or pressed. */
+/** The last notice; a dialog shows it inside, as nothing behind a dialog can be read or pressed. */
 export function Notice() {
   if (notice.value === null) return null;
   return (

@@ -38,7 +38,7 @@ export function OpenReplays({ incidents }: { incidents: readonly api.Incident[] 
   );
 }
 
-/** One's own, and as a commander anybody's; what a station was started for ends with it. */
+/** A user may end own replays, a commander all; that of a replay station ends with it. */
 function mayEnd(begunBy: string): boolean {
   const me = user.value;
   return me !== null && begunBy !== "" && (me.role !== "viewer" || me.username === begunBy);

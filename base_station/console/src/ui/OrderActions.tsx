@@ -12,7 +12,7 @@ interface Props {
   sent: (command: CommandView) => void; // that has followed from it
 }
 
-/** What can be done about an order that was given: sent again, and ended. */
+/** Actions on a sent order: send again, and end. */
 export function OrderActions({ command, sent }: Props) {
   const once = useSinglePress();
   const { command_id: id } = command;

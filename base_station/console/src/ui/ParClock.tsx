@@ -38,7 +38,7 @@ export function ParClock({ picture }: { picture: Picture }) {
   );
 }
 
-/** Whether the mark of this person says so. */
+/** Whether the mark of this person shows it. */
 export function isOverdue({ duty }: UnitView, picture: Picture): boolean {
   if (duty === null) return false;
   return parOf(duty, picture.incident.value, picture.nowMs.value).state === "overdue";

@@ -16,10 +16,10 @@ import { finding, order, part, showAll, text } from "./listState";
 import { PeopleGroups } from "./PeopleGroups";
 import { Unassigned } from "./Unassigned";
 
-/** With more than this, whoever is well is said in short, so that who is not is seen. */
+/** With more members than this, those who are well get short cards, so that the others stand out. */
 const MANY = 6;
 
-/** The list of people: who needs attention first, without jumping while somebody reads. */
+/** The list of people: those who need attention first, without jumps while it is read. */
 export function People({ picture }: { picture: Picture }) {
   const held = useSignal(false);
   const places = useSignal<readonly Place[]>([]);
@@ -40,7 +40,7 @@ export function People({ picture }: { picture: Picture }) {
       if (!samePlaces(next, places.value)) places.value = next;
     }));
   });
-  useEffect(() => showAll, [picture]); // what is sought here is not sought in the past
+  useEffect(() => showAll, [picture]); // a search does not carry over to another picture
   if (part.value !== null) void second.value; // people go in and out
   const shown = shownOf(places.value, picture);
   return (
@@ -106,7 +106,7 @@ function shownOf(places: readonly Place[], picture: Picture): Group[] {
   return groups;
 }
 
-/** A list in which somebody is sought says that others are left out. */
+/** A searched list states that others are left out. */
 function LeftOut({ groups, all }: { groups: readonly Group[]; all: number }) {
   const shown = groups.reduce((sum, group) => sum + group.places.length, 0);
   const sought = text.value.trim() !== "" || part.value !== null;

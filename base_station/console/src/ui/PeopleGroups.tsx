@@ -11,7 +11,7 @@ import { density, fold, foldedCrews } from "./listState";
 
 interface Props {
   groups: readonly Group[];
-  brief: boolean; // whoever is well is said in short
+  brief: boolean; // short cards for members who are well
   picture: Picture;
 }
 
@@ -30,7 +30,7 @@ export function PeopleGroups({ groups, brief, picture }: Props) {
   );
 }
 
-/** Folded, it says how many it has; who is chosen is seen all the same. */
+/** A folded group shows its number; a chosen member stays visible. */
 function Crew({ crew, group, brief, picture }: { crew: string; group: Group } & Omit<Props, "groups">) {
   const { places, down } = group;
   const folded = foldedCrews.value.has(crew);

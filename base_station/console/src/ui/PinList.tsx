@@ -37,7 +37,7 @@ export function PinList({ picture }: { picture: Picture }) {
   );
 }
 
-/** A button for who may change it. */
+/** A button for users who may change it. */
 function Words({ edit, children }: { edit: Tool; children: ComponentChildren }) {
   if (!mayAct.value) return <span>{children}</span>;
   return (
@@ -47,7 +47,7 @@ function Words({ edit, children }: { edit: Tool; children: ComponentChildren }) 
   );
 }
 
-/** What somebody is to see to stands on top; the others in the order in which they were set. */
+/** Pins that need attention come first; the others in the order in which they were set. */
 function worstFirst(pins: readonly PinView[]): PinView[] {
   const rank = (pin: PinView) => (pin.state === "conflict" ? 0 : 1);
   return [...pins].sort((one, other) => rank(one) - rank(other));

@@ -72,7 +72,7 @@ export function PinPanel({ picture, unitId, pin }: Props) {
   );
 }
 
-/** What became of a pin. */
+/** The state of a pin. */
 function Verdict({ pin }: { pin: PinView }) {
   const state = knownLabel("pin", `state_${pin.state}`) ?? pin.state;
   return (
@@ -133,7 +133,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
 
 const MANY = 6;
 
-/** Forty names would push what is to be said out of sight. */
+/** Forty names would push the notice out of sight. */
 function Everybody({ names }: { names: readonly string[] }) {
   const all = listed(names) || t("pin.nobody");
   if (names.length <= MANY) return <p>{all}</p>;
@@ -156,7 +156,7 @@ const COMPASS: readonly [PlainKey, number][] = [
   ["direction.nw", 315],
 ];
 
-/** Two people were at the same place; nobody has to say where. */
+/** Two people were at the same place, which may be unknown. */
 export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: string }) {
   const first = onDuty(picture).find((unit) => unit.unit_id !== unitId);
   const whom = useSignal(first?.unit_id ?? "");

@@ -7,7 +7,7 @@ import { user, type Replay } from "../sessions";
 import type { ReplayView } from "../wire";
 import { useRadio } from "./useRadio";
 
-/** Of this page: off until somebody wants to hear it. */
+/** Of this page: off by default. */
 const isOn = signal(false);
 const volume = signal(0.8);
 const chosen = signal("");
@@ -17,7 +17,7 @@ interface Props {
   state: ReplayView;
 }
 
-/** The radio of the incident, in step with its replay; nothing where none was recorded, or may be heard. */
+/** The radio of the incident, in step with its replay; nothing without recordings, or without the right. */
 export function RadioPlayer({ replay, state }: Props) {
   const loaded = useRadio(replay.incident.incident_id);
   const channels = (loaded.value?.channels ?? []).map(({ name }) => name);

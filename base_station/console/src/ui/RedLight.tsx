@@ -1,4 +1,4 @@
-/** What of photos, maps and pictures is red: the filter of the red-light theme. */
+/** Filter of the red-light theme for photos, maps and pictures. */
 export function RedLight() {
   return (
     <svg width="0" height="0" class="spoken" aria-hidden="true">

@@ -13,7 +13,7 @@ interface Props {
   live: Picture;
 }
 
-/** Nobody may take the past for the present: a banner, a frame, and what is live beside it. */
+/** Marks of a replay, so that the past is not taken for the present: a banner, a frame, and live alarms. */
 export function ReplayBar({ replay, live }: Props) {
   const state = replay.session.picture.replay.value;
   return (
@@ -55,7 +55,7 @@ export function ReplayBar({ replay, live }: Props) {
   );
 }
 
-/** Nobody may take a replay of half a log, or of another Muster, for what the commander saw. */
+/** Differences between a replay and what the commander saw: a partial log, or another version. */
 function Flaws({ flaws }: { flaws: readonly string[] }) {
   if (flaws.length === 0) return null;
   return (
@@ -65,7 +65,7 @@ function Flaws({ flaws }: { flaws: readonly string[] }) {
   );
 }
 
-/** What is shown in it is the last that was recorded before it. */
+/** In a gap the last recorded state before it is shown. */
 function Gap({ gap, startMs }: { gap: GapView; startMs: number }) {
   return (
     <span class="replay-live alarmed" role="alert">

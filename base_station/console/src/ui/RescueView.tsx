@@ -24,7 +24,7 @@ interface Props {
   picture: Picture;
 }
 
-/** On the card of who is down and chosen: who is nearest by way, and who is sent. */
+/** On the card of a chosen member who is down: the nearest rescuers by route, and sending one. */
 export function RescueView({ unit, picture }: Props) {
   const needed = needsOf(unit, picture.alarms.value).length > 0 && !isPast.value;
   return needed ? <Ways unit={unit} picture={picture} /> : null;

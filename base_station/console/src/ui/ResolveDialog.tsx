@@ -5,7 +5,7 @@ import { dialog, resolving } from "../uiState";
 import { Dialog } from "./Dialog";
 import { ResolveForm } from "./ResolveForm";
 
-/** Asks why the alarms of one row are over; nothing is done before that is said. */
+/** Dialog for the reason of a resolution of one row's alarms, which is required. */
 export function ResolveDialog() {
   const alarms = resolving.value;
   if (alarms.length === 0 || !mayAct.value) return null;

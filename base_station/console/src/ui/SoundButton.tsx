@@ -2,7 +2,7 @@ import { soundBlocked, soundOn, switchSound } from "../sound";
 import { t } from "../language/translate";
 import { Icon } from "./Icon";
 
-/** Whether alarms are heard at this console. */
+/** Switch for the sounds of alarms at this console. */
 export function SoundButton() {
   const heard = soundOn.value && !soundBlocked.value;
   const word = t(!soundOn.value ? "sound.off" : heard ? "sound.on" : "sound.blocked");

@@ -8,7 +8,7 @@ import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { Icon } from "./Icon";
 
-/** At a station that does not lead: nobody may take it for the one that does. */
+/** Bar at a standby: it must not be taken for the leading station. */
 export function StandbyBar({ picture }: { picture: Picture }) {
   const reading = picture.health.value?.reading ?? null;
   if (reading !== null) return <ReadingBar share={reading} />;
@@ -30,7 +30,7 @@ export function StandbyBar({ picture }: { picture: Picture }) {
   );
 }
 
-/** After a crash without a saved state: nobody may take what was last stored for what is now. */
+/** Bar after a crash without a saved state: the last stored state must not be taken for the present. */
 function ReadingBar({ share }: { share: number }) {
   return (
     <section class="standby-bar" aria-label={t("standby.reading")}>
@@ -41,7 +41,7 @@ function ReadingBar({ share }: { share: number }) {
   );
 }
 
-/** The way to the other station's console, where it has said it. */
+/** Link to the other station's console, where its address is known. */
 export function OtherConsole({ standby }: { standby: StandbyView }) {
   if (!/^https?:/.test(standby.other_url)) return null;
   const way = transferUrl(standby.station, standby.other_url);

@@ -9,7 +9,7 @@ import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
 
-/** Who may log in, and as what. */
+/** Users and their roles. */
 export function UsersDialog() {
   const [users, again] = useLoaded(api.users);
   return (

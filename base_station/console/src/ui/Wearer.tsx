@@ -49,7 +49,7 @@ function nameAndUnit(named: Named, unitId: string): string {
   return other === undefined ? name : t("units.wears", { name, unit: other.label || other.unit_id });
 }
 
-/** On the card of a unit that nobody wears yet. */
+/** On the card of a unit without a wearer. */
 export function AskWearer({ unit }: { unit: UnitView }) {
   const [people] = useLoaded(api.people);
   return (

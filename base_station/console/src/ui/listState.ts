@@ -1,4 +1,4 @@
-/** How this console shows the list of members: what is sought, in which order, and how dense. */
+/** State of this console's list of members: search text, order and density. */
 import { signal } from "@preact/signals";
 import { kept } from "../kept";
 import type { Order, Sought } from "../live/finding";
@@ -6,10 +6,10 @@ import type { Order, Sought } from "../live/finding";
 export const text = signal("");
 export const part = signal<Sought["part"]>(null);
 export const foldedCrews = signal<ReadonlySet<string>>(new Set());
-/** On a small screen the search is hidden until somebody asks for it. */
+/** On a small screen the search is hidden until it is opened. */
 export const finding = signal(false);
 
-/** Counts up when somebody asks for the search. */
+/** Counts up when the search is opened. */
 export const seeking = signal(0);
 
 export type Density = "cards" | "lines";

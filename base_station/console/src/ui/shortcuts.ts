@@ -1,4 +1,4 @@
-/** Keys for what is needed at once.  Each opens what its button opens, and asks the same. */
+/** Keys of urgent actions.  Each opens the dialog of its button, with the same question. */
 import { useEffect } from "preact/hooks";
 import { shortcutsOn } from "../appearance";
 import type { PlainKey } from "../language/translate";

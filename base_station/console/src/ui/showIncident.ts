@@ -1,4 +1,4 @@
-/** Another of several open incidents on the screen. */
+/** Change of the incident on the screen. */
 import { selectedUnit, find, floor } from "../uiState";
 import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";

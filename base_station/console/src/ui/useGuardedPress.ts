@@ -17,7 +17,7 @@ export function useGuardedPress(place: number | string, whenNew = true): (act: (
   };
 }
 
-/** For what would be done twice: pressed again in haste, or before the station has answered, it is not. */
+/** Guard against a second press in haste, or before the station has answered. */
 export function useSinglePress(): (act: () => Promise<unknown>) => void {
   const untilMs = useRef(-Infinity);
   return (act) => {

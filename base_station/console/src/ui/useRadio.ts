@@ -6,7 +6,7 @@ import { useLoaded } from "./useLoaded";
 
 const NOTHING: RadioAnswer = { from_ms: 0, until_ms: 0, channels: [] };
 
-/** What was recorded of the radio in an incident; nothing of a station without a log, or an older one. */
+/** Radio recordings of an incident; none at a station without a log, or an older one. */
 export function useRadio(incidentId: string): Signal<RadioAnswer | null> {
   const [loaded] = useLoaded(() =>
     api.radio(incidentId).catch((error: unknown) => {

@@ -1,4 +1,4 @@
-/** What people did, as the audit log has it. */
+/** Entries of the audit log. */
 export const audit_action = {
   AcknowledgeAlarm: "Acknowledge alarm",
   ResolveAlarm: "Resolve alarm",

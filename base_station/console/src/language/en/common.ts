@@ -1,4 +1,4 @@
-/** Words that several parts of the screen have. */
+/** Texts of several parts of the screen. */
 export const common = {
   close: "Close",
   save: "Save",

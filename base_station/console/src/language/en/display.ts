@@ -1,4 +1,4 @@
-/** How this browser shows the console. */
+/** Display settings of this browser. */
 export const display = {
   title: "Display",
   theme: "Theme",

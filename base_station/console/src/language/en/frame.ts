@@ -1,4 +1,4 @@
-/** The frame of the page: header, banners and what stands where a part fails. */
+/** The frame of the page: header, banners and messages of failed parts. */
 export const frame = {
   link_state: "The state of the connection",
   stations_state: "The state of the two stations",

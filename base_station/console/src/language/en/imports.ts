@@ -1,4 +1,4 @@
-/** What was brought into an incident from elsewhere. */
+/** Files imported into an incident. */
 export const imports = {
   title: "Brought into {incident}",
   open: "Brought in…",

@@ -1,4 +1,4 @@
-/** What is managed: menu, units, users, recordings and the site. */
+/** Management: menu, units, users, recordings and the site. */
 export const menu = {
   menu: "Menu",
   manage: "Manage",

@@ -1,4 +1,4 @@
-/** Numbers with what they count, times and floors. */
+/** Numbers with their units, times and floors. */
 export const measure = {
   ago: "{age} ago",
   old: "{age} old",

@@ -1,4 +1,4 @@
-/** What is known of a member: activity, posture, link, battery, heat. */
+/** State of a member: activity, posture, link, battery, heat. */
 export const activity = {
   unknown: "Unknown",
   still: "Still",

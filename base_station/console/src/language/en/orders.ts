@@ -1,4 +1,4 @@
-/** Orders to units: what they say and how far they have got. */
+/** Orders to units: texts and progress. */
 export const order = {
   evacuate: "Evacuate",
   par_request: "PAR",

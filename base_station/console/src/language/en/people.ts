@@ -1,4 +1,4 @@
-/** The list of people, its cards and what can be done for a person. */
+/** The list of people, its cards and the actions on a person. */
 export const board = {
   title: "Board",
   print: "Print",

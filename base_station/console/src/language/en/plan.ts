@@ -1,4 +1,4 @@
-/** The plan: where it lies, what is on it and what shows it. */
+/** The plan: its place, content and display. */
 export const anchor = {
   title: "Plan location",
   align: "Align by two points",
