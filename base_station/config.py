@@ -15,6 +15,7 @@ from base_station.forwarders.tak.config import TakConfig
 from base_station.radio.config import RadioConfig
 from base_station.storage.db.server_address import ServerAddress
 from shared.channels import validate_unit_id
+from shared.coded_text import coded
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.host_names import can_be_looked_up, is_loopback
@@ -171,7 +172,10 @@ class ServerConfig:
         """Problems that last as long as these settings, as sentences for the console."""
         if all(one.startswith("tls/") for one in self.bus.listen):
             return ()
-        return ("The bus is plain TCP: every machine that reaches it can pose as any unit",)
+        text = coded(
+            "bus-plain", "The bus is plain TCP: every machine that reaches it can pose as any unit"
+        )
+        return (text,)
 
     def require_encryption(self) -> None:
         """ConfigError where plain connections from other machines were not asked for."""

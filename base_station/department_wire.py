@@ -12,7 +12,9 @@ from typing import TypeVar
 
 import msgspec
 
+from shared.coded_text import TextCode
 from shared.errors import WireError
+from shared.messages.alarm import NO_PARAMETERS, AlarmParameters
 
 W = TypeVar("W")
 
@@ -65,6 +67,7 @@ class Summary(msgspec.Struct, frozen=True):
     waiting: int  # events that are not acknowledged
     lat_deg: float | None = None  # of the station's site, where that has an anchor
     lon_deg: float | None = None
+    problem_codes: tuple[TextCode, ...] = ()  # of ``problems``, in their order
 
 
 class AlarmEvent(msgspec.Struct, frozen=True, tag="alarm"):
@@ -80,6 +83,8 @@ class AlarmEvent(msgspec.Struct, frozen=True, tag="alarm"):
     by: str
     raised_ms: int
     changed_ms: int
+    code: str = ""  # of the sentence in ``text``; empty: of an earlier version
+    parameters: AlarmParameters = NO_PARAMETERS
 
 
 class ParEvent(msgspec.Struct, frozen=True, tag="par"):

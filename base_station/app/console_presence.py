@@ -10,6 +10,7 @@ from base_station.app.listening_addresses import interfaces_of, reachable_addres
 from base_station.config import HttpConfig, host_and_port
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.hosts import own_hosts
+from shared.coded_text import coded
 from shared.discovery import ConsoleAnnouncement
 
 _log = logging.getLogger(__name__)
@@ -35,13 +36,22 @@ class ConsolePresence(KeptAnnouncement):
         """Sentences for the console."""
         name = f"{self._config.local_name}.local"
         if self.fault:
-            return (f"Browsers do not find this console as {name}: {self.fault}",)
-        if self._config.local_name and not self._is_in_certificate(name):
-            return (
-                f"The certificate of the console does not stand for {name}, so that browsers warn "
-                f"of it: make one that does with `muster pki renew-station --host {name}`, and "
-                "--host for each other name and address",
+            text = coded(
+                "console-not-announced",
+                "Browsers do not find this console as {name}: {error}",
+                name=name,
+                error=self.fault,
             )
+            return (text,)
+        if self._config.local_name and not self._is_in_certificate(name):
+            text = coded(
+                "console-name-not-certified",
+                "The certificate of the console does not stand for {name}, so that browsers warn "
+                "of it: make one that does with `muster pki renew-station --host {name}`, and "
+                "--host for each other name and address",
+                name=name,
+            )
+            return (text,)
         return ()
 
     def _is_in_certificate(self, name: str) -> bool:

@@ -9,18 +9,28 @@ from pathlib import Path
 
 from base_station.security.pki.folder import PkiFolder
 from base_station.storage.data_folder import DataFolder
-from shared.secret_files import ALL_BUT_OWNER, OTHERS, close_to_others, exposed
+from shared.coded_text import Term, coded
+from shared.secret_files import ALL_BUT_OWNER, OTHERS, close_to_others
 
 _ADVICE = {
-    "authority.key": "with it any unit can be enrolled: if strangers use this machine, make a new "
-    "authority and enrol all units anew",
-    "station.key": "with it a machine can pose as this station: if strangers use this one, make a "
-    "new authority and enrol all units anew",
-    "first-login.txt": "give the administrator another password",
+    "authority.key": Term(
+        "authority_key",
+        "with it any unit can be enrolled: if strangers use this machine, make a new authority and "
+        "enrol all units anew",
+    ),
+    "station.key": Term(
+        "station_key",
+        "with it a machine can pose as this station: if strangers use this one, make a new "
+        "authority and enrol all units anew",
+    ),
+    "first-login.txt": Term("first_login", "give the administrator another password"),
 }
-_OTHERWISE = "if strangers use this machine, make another key"
-_DATABASE = "if strangers use this machine, give the database's user another password"
-_ACCOUNTS = "if strangers use this machine, give every user another password"
+_OTHERWISE = Term("key", "if strangers use this machine, make another key")
+_DATABASE = Term(
+    "database_password",
+    "if strangers use this machine, give the database's user another password",
+)
+_ACCOUNTS = Term("database", "if strangers use this machine, give every user another password")
 
 
 class ExposedSecrets:
@@ -50,16 +60,27 @@ def _sentences(
         yield from _closed(database_password, OTHERS, _DATABASE)
 
 
-def _closed(path: Path, whom: int, remedy: str) -> Iterator[str]:
+def _closed(path: Path, whom: int, remedy: Term) -> Iterator[str]:
     try:
         mode = close_to_others(path, whom)
     except FileNotFoundError:
         return
     except OSError as error:
-        yield (
-            f"{path} can be read or changed by others, and that cannot be taken away "
-            f"({error.strerror}): give it to the station's user with mode 0600; {remedy}"
+        yield coded(
+            "secret-open",
+            "{path} can be read or changed by others, and that cannot be taken away ({error}): "
+            "give it to the station's user with mode 0600; {remedy}",
+            path=str(path),
+            error=error.strerror or "",
+            remedy=remedy,
         )
         return
     if mode:
-        yield f"{exposed(path, mode)}; {remedy}"
+        yield coded(
+            "secret-was-open",
+            "{path} could be read or changed by others (mode {mode}) and has been closed to "
+            "them; {remedy}",
+            path=str(path),
+            mode=f"{mode:04o}",
+            remedy=remedy,
+        )

@@ -10,6 +10,7 @@ from base_station.engine.station_clock import SteadyClock
 from base_station.standby.mode import HaMode
 from base_station.views.station import StationFacts
 from base_station.views.wire import ArchiveView, ForwarderView, RadioView
+from shared.coded_text import coded
 
 
 class ReportsProblems(Protocol):
@@ -40,10 +41,13 @@ def health_facts(
     ]
     if resources.feed.overflows:
         left_out = resources.feed.overflowed
-        problems.append(
-            f"Messages come faster than this machine can take them; {left_out} were left out, and "
-            "are fetched from the units' journals"
+        text = coded(
+            "messages-left-out",
+            "Messages come faster than this machine can take them; {count} were left out, and are "
+            "fetched from the units' journals",
+            count=left_out,
         )
+        problems.append(text)
     return StationFacts(
         problems=tuple(problems),
         log_bytes=resources.recorder.log_bytes,

@@ -16,6 +16,7 @@ from base_station.config import StationConfig, endpoint_address
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.hosts import own_hosts
+from shared.coded_text import coded
 from shared.discovery import Announcement
 from shared.tls import fingerprint
 
@@ -48,14 +49,22 @@ class StationPresence(KeptAnnouncement):
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
         if self.fault:
-            return (f"The station is not announced on its network: {self.fault}",)
+            text = coded(
+                "station-not-announced",
+                "The station is not announced on its network: {error}",
+                error=self.fault,
+            )
+            return (text,)
         if not self._not_covered:
             return ()
-        return (
-            f"Units do not discover this station at {', '.join(self._not_covered)}, as its "
-            "certificate does not stand for that: make one that does with `muster pki "
-            "renew-station`, and --host for each address",
+        text = coded(
+            "station-not-certified",
+            "Units do not discover this station at {addresses}, as its certificate does not stand "
+            "for that: make one that does with `muster pki renew-station`, and --host for each "
+            "address",
+            addresses=", ".join(self._not_covered),
         )
+        return (text,)
 
     def _wanted(self) -> Announcement:
         identity = self._pki.station_identity()

@@ -42,16 +42,20 @@ from base_station.storage.recorder import Recorder
 from base_station.storage.segment_index import known_segments_of
 from base_station.unit_sync.log_gap_detector import LogGapDetector, Lost
 from shared.clock import Clock
+from shared.coded_text import Term
 from shared.errors import StoreError
 from shared.mcap_log import segment_number
 from shared.messages import STATION_ID
 
-_RESTORE = (
+_RESTORE = Term(
+    "restore",
     "Messages of units are fetched again from their journals; for the rest, restore the file from "
-    "a backup"
+    "a backup",
 )
 REPAIR_RETENTION = 12  # attempts of an erasure: two minutes for a job of some seconds
-_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is reachable"
+_MENDED_FROM_THE_OTHER = Term(
+    "other_station", "What is missing is fetched from the other station when that is reachable"
+)
 
 
 @dataclass(frozen=True)

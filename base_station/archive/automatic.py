@@ -19,6 +19,7 @@ from base_station.replay.processes import wire
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.views.wire import ArchiveView
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import ArchiveError, StoreError
 from shared.worker import Worker
 
@@ -99,10 +100,14 @@ class AutomaticArchive:
         away_s = (self._clock.monotonic_ns() - since_ns) / NS_PER_S
         if away_s < self._config.alarm_after_s:
             return ()
-        return (
-            f"Closed incidents are not archived since {away_s / 60.0:.0f} min, {waiting} wait: "
-            f"{reason}",
+        text = coded(
+            "archive-away",
+            "Closed incidents are not archived since {minutes:.0f} min, {waiting} wait: {reason}",
+            minutes=away_s / 60.0,
+            waiting=waiting,
+            reason=reason,
         )
+        return (text,)
 
     def keeps_audio_since_ns(self) -> int | None:
         """Station time since when no audio may be deleted, as the archive is to have it and has it

@@ -184,7 +184,7 @@ class ActionHandler:
     ) -> Iterator[StateChange]:
         """Apply an action of the station itself."""
         if isinstance(action, ReportProblem):
-            yield from self._alarms.report_problem(state, action.part, action.text)
+            yield from self._alarms.report_problem(state, action)
         elif isinstance(action, SetThresholds):
             state.thresholds = action.thresholds
             self._alarms.use_thresholds(action.thresholds)

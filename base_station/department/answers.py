@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from base_station.views.answer import Answer
-from base_station.views.wire import one_of
+from base_station.views.wire import AlarmParametersView, TextCodeView, one_of
 
 
 class ReportingStationView(Answer, frozen=True):
@@ -24,6 +24,7 @@ class ReportingStationView(Answer, frozen=True):
     problems: tuple[str, ...]
     lat_deg: float | None  # of its site, where that has an anchor
     lon_deg: float | None
+    problem_codes: tuple[TextCodeView, ...] = ()  # of ``problems``, in their order
 
 
 class DepartmentIncidentView(Answer, frozen=True):
@@ -60,6 +61,8 @@ class DepartmentAlarmView(Answer, frozen=True):
     by: str
     raised_ms: int
     changed_ms: int
+    code: str = ""  # of the sentence in ``text``; empty: the station is of an earlier version
+    parameters: AlarmParametersView = AlarmParametersView()  # amounts and names in the sentence
 
 
 class DepartmentView(Answer, frozen=True):
@@ -73,6 +76,7 @@ class DepartmentView(Answer, frozen=True):
     people: int
     problems: tuple[str, ...]  # sentences for a person
     has_archive: bool  # past incidents can be opened
+    problem_codes: tuple[TextCodeView, ...] = ()  # of ``problems``, in their order
 
 
 class DepartmentPersonView(Answer, frozen=True):

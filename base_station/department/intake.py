@@ -22,6 +22,7 @@ from base_station.storage.db.known_people import FORGOTTEN, KnownPerson
 from shared.bus import Bus
 from shared.channels import department_events_key, department_summary_key, reporting_station
 from shared.clock import NS_PER_MS, Clock
+from shared.coded_text import coded, join_texts
 from shared.errors import MusterError, StoreError, WireError
 from shared.log_on_change import LogOnChange
 
@@ -60,10 +61,14 @@ class ReportIntake:
     @property
     def problem(self) -> str:
         """Sentence for a person; empty: all is stored."""
-        unreadable = self._unreadable and (
-            f"{self._unreadable} reports of stations could not be read: is this Muster older?"
-        )
-        return "; ".join(filter(None, (self._fault_log.fault, unreadable or "")))
+        unreadable = ""
+        if self._unreadable:
+            unreadable = coded(
+                "department-reports-unreadable",
+                "{count} reports of stations could not be read: is this Muster older?",
+                count=self._unreadable,
+            )
+        return join_texts((self._fault_log.fault, unreadable))
 
     def person(self, station: str, person_id: str) -> KnownPerson:
         """Name of a station's person; who was never named is shown by the id."""

@@ -34,8 +34,12 @@ from base_station.department_wire import PersonSummary
 from base_station.storage.db.department_models import ReportedAlarm, ReportedIncident
 from base_station.storage.db.department_tables import DepartmentTables
 from base_station.storage.db.known_people import shown_text
+from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import to_ms
+from base_station.views.text_code import text_code_view
+from base_station.views.wire import AlarmParametersView
 from shared.clock import NS_PER_MS, Clock
+from shared.coded_text import Measure, Term, code_of_text, coded
 
 _MS_PER_S = 1000.0
 _S_PER_MINUTE, _MINUTES_PER_H = 60, 60
@@ -74,6 +78,7 @@ class DepartmentViews:
     def overview(self) -> DepartmentView:
         pictures, standing = self._picture.all(), self._standing.current
         stations = tuple(self._stations(pictures, standing.missing))
+        problems = (*self._problems(), *self._problems_of(pictures, standing.missing))
         return DepartmentView(
             now_ms=to_ms(self._clock.utc_ns()),
             stations=stations,
@@ -84,8 +89,9 @@ class DepartmentViews:
             alarms=tuple(self._alarm_view(one, pictures) for one in standing.alarms),
             open_alarms=standing.open_alarms,
             people=sum(one.people for one in stations),
-            problems=(*self._problems(), *self._problems_of(pictures, standing.missing)),
+            problems=tuple(map(str, problems)),
             has_archive=self.has_archive,
+            problem_codes=tuple(text_code_view(code_of_text(one)) for one in problems),
         )
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
@@ -158,6 +164,9 @@ class DepartmentViews:
                 problems=() if newest is None else newest.summary.problems,
                 lat_deg=None if newest is None else newest.summary.lat_deg,
                 lon_deg=None if newest is None else newest.summary.lon_deg,
+                problem_codes=()
+                if newest is None
+                else tuple(map(text_code_view, newest.summary.problem_codes)),
             )
 
     def _state(self, picture: StationPicture | None) -> str:
@@ -176,17 +185,23 @@ class DepartmentViews:
         for name, ones in sorted(pictures.items()):
             if len(ones) > 1:
                 hosts = ", ".join(f"{one.summary.host} {one.summary.console_url}" for one in ones)
-                yield (
-                    f"Several machines report as {name}: {hosts}. The people of all are "
-                    "shown; give each station an enrolment of its own, and revoke this one"
+                yield coded(
+                    "department-same-station",
+                    "Several machines report as {station}: {hosts}. The people of all are shown; "
+                    "give each station an enrolment of its own, and revoke this one",
+                    station=name,
+                    hosts=hosts,
                 )
             newest = max(ones, key=lambda one: one.received_ns)
             if abs(newest.offset_ms) > CLOCK_LIMIT_MS:
                 yield _clock_problem(name, newest.offset_ms)
         for name, count in sorted(missing.items()):
-            yield (
-                f"{count} events of {name} are not here: this department's database is older than "
-                "what it has acknowledged. The station's own log has them"
+            yield coded(
+                "department-events-missing",
+                "{count} events of {station} are not here: this department's database is older "
+                "than what it has acknowledged. The station's own log has them",
+                count=count,
+                station=name,
             )
 
     # ---- people and alarms
@@ -262,6 +277,10 @@ class DepartmentViews:
             by=shown_text(alarm.by, people),
             raised_ms=alarm.raised_ms - alarm.offset_ms,
             changed_ms=alarm.changed_ms - alarm.offset_ms,
+            code="" if alarm.coded is None else alarm.coded.code,
+            parameters=AlarmParametersView()
+            if alarm.coded is None
+            else stored_parameters_view(alarm.coded.parameters, people),
         )
 
 
@@ -319,8 +338,12 @@ def _clock_problem(station: str, ahead_ms: int) -> str:
     if minutes >= _MINUTES_PER_H:
         hours, minutes = divmod(round(abs(ahead_ms) / _MS_PER_S / _S_PER_MINUTE), _MINUTES_PER_H)
         apart = f"{hours} h {minutes} min"
-    side = "ahead of" if ahead_ms > 0 else "behind"
-    return (
-        f"The clock of {station} is {apart} {side} the department's: times are shown by the "
-        "department's clock; set the one that is wrong"
+    side = Term("ahead", "ahead of") if ahead_ms > 0 else Term("behind", "behind")
+    return coded(
+        "department-station-clock",
+        "The clock of {station} is {off_s} {side} the department's: times are shown by the "
+        "department's clock; set the one that is wrong",
+        station=station,
+        off_s=Measure(abs(ahead_ms) / _MS_PER_S, apart),
+        side=side,
     )

@@ -9,6 +9,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.ports import Log
 from base_station.storage.checkpoints import Checkpoints
+from shared.coded_text import coded
 
 PART = "checkpoint"
 
@@ -45,7 +46,12 @@ class CheckpointWriter:
         try:
             saved.result()
         except OSError as error:
-            self._health.report(PART, f"The live state cannot be saved ({error}): free the disk")
+            text = coded(
+                "checkpoint-refused",
+                "The live state cannot be saved ({error}): free the disk",
+                error=str(error),
+            )
+            self._health.report(PART, text)
         except Exception as error:  # noqa: BLE001  # the log has everything that matters
             self._health.report_bug(PART, error)
 

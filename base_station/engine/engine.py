@@ -34,6 +34,7 @@ from base_station.views.wire import Snapshot
 from shared.channels import EXTERNAL, OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
+from shared.coded_text import coded
 from shared.envelope import Stamper
 from shared.messages import STATION_ID, ExternalMarker, ExternalMarkers, Tick
 from shared.messages.station import (
@@ -283,10 +284,18 @@ class StationEngine:
         elif admission is Admission.DUPLICATE:
             self._repeated += 1
         elif admission is Admission.FORGED:
-            text = f"A sender on the bus claims to be the station ({key}): rejected"
+            text = coded(
+                "sender-forged",
+                "A sender on the bus claims to be the station ({key}): rejected",
+                key=key,
+            )
             self._health.report("bus", text)
         elif admission is Admission.RESTART_STORM:
-            text = f"A unit's program starts more often than any does ({key}): left out"
+            text = coded(
+                "restart-storm",
+                "A unit's program starts more often than any does ({key}): left out",
+                key=key,
+            )
             self._health.report("bus", text)
         return admission
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+from shared.coded_text import coded
 from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
@@ -47,7 +48,13 @@ class HealthMonitor:
         if type(error) not in kinds:
             kinds.add(type(error))
             log.error("the station's %s failed", part, exc_info=error)
-        self.report(part, f"The station's {part} failed: {error!r}; please report it")
+        text = coded(
+            "part-failed",
+            "The station's {part} failed: {error}; please report it",
+            part=part,
+            error=repr(error),
+        )
+        self.report(part, text)
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
         """``seen``: present problems, by part, empty where there is none; ``known``: problems that
@@ -62,7 +69,7 @@ class HealthMonitor:
                 if part not in known or (
                     part in seen and _without_numbers(text) != _without_numbers(known[part])
                 ):
-                    yield ReportProblem(part, text)
+                    yield ReportProblem.of(part, text)
             elif part in known:
                 self._quiet.setdefault(part, 0)
         for part in [part for part in self._quiet if not now.get(part)]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from base_station.core.state.message_stream import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ
 from base_station.process.token_bucket import TokenBucket
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.messages.station import ReportProblem
 
 BURST_S = 1.0  # so much may come at once, after a link was held up
@@ -19,10 +20,6 @@ _PAUSE_NS = 2 * NS_PER_S  # without any that is too much: it begins anew
 _OVER_AFTER_NS = 30 * NS_PER_S
 _MOST_SENDERS = 2000  # that are kept apart; on a bus without certificates there may be any number
 _PART = "flood "  # and the sender
-_TEXT = (
-    f"{{0}} sends more than any unit does (over {MESSAGES_HZ} messages or {BYTES_PER_S / 1e6:g} MB "
-    "a second): what is too much is dropped. Switch it off, or revoke it: muster pki revoke {0}"
-)
 
 
 class _Sender:
@@ -82,7 +79,7 @@ class SenderRateLimiter:
                     yield ReportProblem(part, "")
             elif sender_id not in self._reported and last_ns - since_ns >= _REPORT_AFTER_NS:
                 self._reported.add(sender_id)
-                yield ReportProblem(part, _TEXT.format(sender_id))
+                yield ReportProblem.of(part, _text(sender_id))
 
     def _new(self, sender_id: str, now_ns: int) -> _Sender:
         if len(self._senders) >= _MOST_SENDERS:
@@ -92,3 +89,15 @@ class SenderRateLimiter:
             }
         sender = self._senders[sender_id] = _Sender(now_ns)
         return sender
+
+
+def _text(sender_id: str) -> str:
+    return coded(
+        "sender-floods",
+        "{sender_id} sends more than any unit does (over {most} messages or {most_mb:g} MB a "
+        "second): what is too much is dropped. Switch it off, or revoke it: muster pki revoke "
+        "{sender_id}",
+        sender_id=sender_id,
+        most=MESSAGES_HZ,
+        most_mb=BYTES_PER_S / 1e6,
+    )

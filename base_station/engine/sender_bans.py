@@ -7,6 +7,7 @@ from threading import Lock
 from typing import NamedTuple
 
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.messages.station import ReportProblem
 
 FIRST_S, LONGEST_S = 60.0, 3600.0
@@ -63,7 +64,7 @@ class SenderBans:
             }
         for part, text in reports.items():
             if known.get(part) != text:
-                yield ReportProblem(part, text)
+                yield ReportProblem.of(part, text)
         for part in [one for one in known if one.startswith(_PART) and one not in reports]:
             yield ReportProblem(part, "")
 
@@ -78,8 +79,12 @@ class SenderBans:
 
 
 def _text(sender_id: str, one: _Ban) -> str:
-    return (
-        f"{sender_id} {one.reason}: it is shut out for {one.seconds / 60.0:.0f} min, as it "
-        "holds up others, and its wearer is out of contact meanwhile: ask by voice. Exchange "
-        f"the unit, or revoke it: muster pki revoke {sender_id}"
+    return coded(
+        "sender-shut-out",
+        "{sender_id} {reason}: it is shut out for {minutes:.0f} min, as it holds up others, and "
+        "its wearer is out of contact meanwhile: ask by voice. Exchange the unit, or revoke it: "
+        "muster pki revoke {sender_id}",
+        sender_id=sender_id,
+        reason=one.reason,
+        minutes=one.seconds / 60.0,
     )

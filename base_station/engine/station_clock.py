@@ -7,6 +7,7 @@ from threading import Lock
 
 from base_station.core.durations import format_duration
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import Measure, coded
 
 _STEP_NS = 5 * NS_PER_S  # nothing is old after that
 _REPORT_FROM_NS = 5 * NS_PER_S
@@ -62,13 +63,20 @@ class SteadyClock:
         ahead_ns = self.utc_ns() - self._clock.utc_ns()
         if abs(ahead_ns) <= _REPORT_FROM_NS:
             return ()
-        span = format_duration(abs(ahead_ns) / NS_PER_S)
+        off_s = abs(ahead_ns) / NS_PER_S
+        span = Measure(off_s, format_duration(off_s))
         if ahead_ns > 0:
-            return (
-                f"This machine's clock is {span} behind what was recorded here last: set it. "
+            text = coded(
+                "clock-behind",
+                "This machine's clock is {off_s} behind what was recorded here last: set it. "
                 "Times go on from there meanwhile",
+                off_s=span,
             )
-        return (
-            f"This machine's clock is {span} ahead of the time that is recorded, which does not "
-            "leap at a standby or in an open incident: set it, or close the incident",
-        )
+        else:
+            text = coded(
+                "clock-ahead",
+                "This machine's clock is {off_s} ahead of the time that is recorded, which does "
+                "not leap at a standby or in an open incident: set it, or close the incident",
+                off_s=span,
+            )
+        return (text,)

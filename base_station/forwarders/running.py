@@ -56,7 +56,7 @@ class Forwarders:
         now = {f"{_PART}{one.view().name}": one.problem() for one in self._forwarders}
         for part, text in now.items():
             if text and part not in known:
-                yield ReportProblem(part, text)
+                yield ReportProblem.of(part, text)
         for part in known:
             if part.startswith(_PART) and not now.get(part):
                 yield ReportProblem(part, "")

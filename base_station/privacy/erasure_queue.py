@@ -23,6 +23,7 @@ from base_station.privacy.erasure_service import (
     Progress,
 )
 from base_station.storage.job_queue import JobList, JobQueue
+from shared.coded_text import Term, coded
 from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
 
@@ -108,8 +109,24 @@ class ErasureQueue:
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console, while something is under way."""
         return tuple(
-            f"The log is being written anew to forget a {one.kind} ({one.share:.0%}), as {one.by} "
-            f"wished{f': {one.problem}' if one.problem else ''}"
+            coded(
+                "erasure-under-way",
+                "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
+                "wished",
+                kind=Term(one.kind, one.kind),
+                share_fraction=one.share,
+                by=one.by,
+            )
+            if not one.problem
+            else coded(
+                "erasure-waits",
+                "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
+                "wished: {reason}",
+                kind=Term(one.kind, one.kind),
+                share_fraction=one.share,
+                by=one.by,
+                reason=one.problem,
+            )
             for one in self.all()
             if not one.state.is_over
         )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 import threading
 
+from shared.coded_text import coded
+
 log = logging.getLogger(__name__)
 
 
@@ -25,8 +27,12 @@ class ThreadCrashMonitor:
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console; they stay until the station starts again."""
         return tuple(
-            f"A part of the station has ended by a mistake in the program ({name}): start the "
-            "station again at the next quiet moment, and report it"
+            coded(
+                "part-ended",
+                "A part of the station has ended by a mistake in the program ({name}): start the "
+                "station again at the next quiet moment, and report it",
+                name=name,
+            )
             for name in self._names
         )
 

@@ -24,6 +24,7 @@ from base_station.radio.config import RadioConfig
 from base_station.radio.packets import Packet, payload_of
 from base_station.views.wire import RadioView
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, audio_topic, recover_log
 from shared.worker import Worker
@@ -62,7 +63,7 @@ class RadioChannel:
         self._writing = Lock()
         self._writer: SegmentWriter | None = None
         self._recorded_until_ns = 0  # station time
-        self._problem = ""
+        self._problem: str = ""
         self._is_recording = False
         self._retry_s = _RETRY_S
         self._worker = Worker(f"radio-{name}", self._step, f"radio channel {name} is not recorded")
@@ -87,7 +88,7 @@ class RadioChannel:
             name=self._name,
             source=self._config.shown_source,
             state="recording" if self._is_recording else "away",
-            problem=self.problem,
+            problem=str(self.problem),
         )
 
     @property
@@ -112,7 +113,12 @@ class RadioChannel:
             _kill(run.process)
         if self._worker.stopping.is_set():
             return 0.0
-        self._problem = f"Radio channel {self._name} is not recorded: {problem}"
+        self._problem = coded(
+            "radio-not-recorded",
+            "Radio channel {name} is not recorded: {reason}",
+            name=self._name,
+            reason=problem,
+        )
         logger.warning("%s", self._problem)
         now_ns = self._clock.monotonic_ns()
         if run.packets_since_ns is not None and now_ns - run.packets_since_ns > _STEADY_NS:

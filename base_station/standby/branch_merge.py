@@ -25,6 +25,7 @@ from base_station.standby.rpc import RpcServer, ask
 from shared.bus import Bus
 from shared.channels import OPERATOR, Direction, backfilled_key, parse_key
 from shared.codec import decode
+from shared.coded_text import coded
 from shared.errors import UnknownChannelError, WireError
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import Assign, DoneApart, ReportProblem
@@ -109,7 +110,12 @@ class BranchMerge:
 
     def _merge(self, station: str, name: bytes, stop: Event) -> None:
         taken = 0
-        results: dict[DoneApart | ReportProblem, Future[ActionResult]] = {}
+        results: dict[str, Future[ActionResult]] = {}  # by action id
+
+        def submit(action: DoneApart | ReportProblem) -> None:
+            action_id = _id_of(name, action)
+            results[action_id] = self._gate.submit(STATION_ID, action, action_id)
+
         while True:
             question = b"%s %d" % (name, taken)
             batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
@@ -121,15 +127,17 @@ class BranchMerge:
             for record in records:
                 done = self._take(station, record)
                 if done is not None:
-                    results[done] = self._gate.submit(STATION_ID, done, _id_of(name, done))
+                    submit(done)
             taken += len(records)
         if results:
-            text = (
-                f"While the stations were apart, people acted at {station} ({len(results)} times), "
-                "and that is not in force here: the audit names it; do again what still matters"
+            text = coded(
+                "acted-apart",
+                "While the stations were apart, people acted at {station} ({count} times), and "
+                "that is not in force here: the audit names it; do again what still matters",
+                station=station,
+                count=len(results),
             )
-            report = ReportProblem(f"apart {station}", text)
-            results[report] = self._gate.submit(STATION_ID, report, _id_of(name, report))
+            submit(ReportProblem.of(f"apart {station}", text))
         while not (all(one.done() for one in results.values()) and self._settled()):
             if stop.wait(_SETTLE_S):
                 return

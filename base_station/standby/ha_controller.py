@@ -30,6 +30,7 @@ from shared.bus import Bus
 from shared.channels import OPERATOR, Qos
 from shared.clock import NS_PER_S
 from shared.codec import encode
+from shared.coded_text import coded
 from shared.envelope import Stamper
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import TakeOver
@@ -282,35 +283,70 @@ class HaController:
         found = [stranger] if stranger else []
         if self.leads:
             if not self.copy.is_there:
-                found.append("There is no standby: what is done now is on this station alone")
+                found.append(
+                    coded(
+                        "standby-none",
+                        "There is no standby: what is done now is on this station alone",
+                    )
+                )
             elif self.copy.is_behind:
-                found.append("The standby is behind: what is done now is on this station alone")
+                found.append(
+                    coded(
+                        "standby-behind",
+                        "The standby is behind: what is done now is on this station alone",
+                    )
+                )
         elif self._election.is_cut_off(now_ns):
             assert other is not None
             found.append(
-                f"No message of {other.station} or of any unit arrives: this station is probably "
-                "cut off. It takes over as soon as it receives a unit, or by hand"
+                coded(
+                    "standby-cut-off",
+                    "No message of {station} or of any unit arrives: this station is probably cut "
+                    "off. It takes over as soon as it receives a unit, or by hand",
+                    station=other.station,
+                )
             )
         elif self.followed() is None and self._around.log.place == START:
             found.append(
-                "No active station is reachable, and this new standby has nothing yet: it waits"
+                coded(
+                    "standby-empty",
+                    "No active station is reachable, and this new standby has nothing yet: it "
+                    "waits",
+                )
             )
         elif self.followed() is None and self._election.lacks_log:
             assert other is not None
             found.append(
-                f"{other.station} is not reachable, and this standby has not got everything of it: "
-                f"it waits {LACKING_LEASES * self._config.lease_s:.0f} s for it to come back, and "
-                "takes over then, or by hand"
+                coded(
+                    "standby-lacks-log",
+                    "{station} is not reachable, and this standby has not got everything of it: "
+                    "it waits {wait_s:.0f} s for it to come back, and takes over then, or by hand",
+                    station=other.station,
+                    wait_s=LACKING_LEASES * self._config.lease_s,
+                )
             )
         elif self.followed() is None:
-            found.append("No active station is reachable: this one takes over in some seconds")
+            found.append(
+                coded(
+                    "standby-takes-over",
+                    "No active station is reachable: this one takes over in some seconds",
+                )
+            )
         elif self._around.log.is_cut_short or self._around.log.problem:
             found.append(
-                "The disk of this standby does not take the log: free or mend it; what is missing "
-                "is fetched then"
+                coded(
+                    "standby-disk",
+                    "The disk of this standby does not take the log: free or mend it; what is "
+                    "missing is fetched then",
+                )
             )
         elif not self.in_step:
-            found.append("This standby has not got everything of the active station yet")
+            found.append(
+                coded(
+                    "standby-fetching",
+                    "This standby has not got everything of the active station yet",
+                )
+            )
         if self._follower.problem:
             found.append(self._follower.problem)
         return found

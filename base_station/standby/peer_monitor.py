@@ -11,6 +11,7 @@ from base_station.standby.protocol import PROTOCOL, PeerHeartbeat, ReplicationAc
 from shared.bus import Bus
 from shared.channels import STATIONS_ROOT, alive_key
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
@@ -41,7 +42,7 @@ class PeerMonitor:
         self._on_beat = on_beat
         self._on_have = on_have
         self._units: set[str] = set()
-        self._stranger = ""
+        self._stranger: str = ""
         self._stranger_ns = 0  # time of its last heartbeat
         self._declared = [
             bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._receive_beat),
@@ -76,15 +77,18 @@ class PeerMonitor:
         now_ns = self._clock.monotonic_ns()
         if beat.station == self._station:
             self._stranger_ns = now_ns
-            self._stranger = (
-                f"Two stations call themselves {beat.station}: give each a name of its own in "
-                "[standby]"
+            self._stranger = coded(
+                "standby-same-name",
+                "Two stations call themselves {station}: give each a name of its own in [standby]",
+                station=beat.station,
             )
         elif beat.protocol != PROTOCOL:
             self._stranger_ns = now_ns
-            self._stranger = (
-                f"Station {beat.station} is of another version: the two cannot stand by for each "
-                "other until both are updated"
+            self._stranger = coded(
+                "standby-other-version",
+                "Station {station} is of another version: the two cannot stand by for each other "
+                "until both are updated",
+                station=beat.station,
             )
         else:
             self._election.receive(beat, now_ns)

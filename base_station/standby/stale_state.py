@@ -6,6 +6,8 @@ came.  One that has started since then has stepped the log without that part.
 
 from __future__ import annotations
 
+from shared.coded_text import coded
+
 
 class StaleState:
     """From any thread."""
@@ -30,9 +32,10 @@ class StaleState:
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
-        problem = (
+        problem = coded(
+            "state-stale",
             "What the disk had lost of the log is there again, and this station's picture was made "
             "without it. It is made anew as soon as the other station is in step and no incident "
-            "is open; to have it now, let the other one take over"
+            "is open; to have it now, let the other one take over",
         )
         return (problem,) if self.is_stale else ()

@@ -12,6 +12,7 @@ from pathlib import Path
 from threading import Lock
 
 from base_station.storage.missing_segments import LogGap
+from shared.coded_text import Term, coded
 from shared.errors import LogError
 from shared.mcap_log import (
     SegmentInfo,
@@ -31,7 +32,7 @@ _AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's house
 class IntegrityChecker:
     """Reads the complete segments, one a look, round after round; from any thread."""
 
-    def __init__(self, remedy: str) -> None:
+    def __init__(self, remedy: Term) -> None:
         """``remedy``: what becomes of a damaged one, for a person."""
         self._remedy = remedy
         self._lock = Lock()
@@ -142,25 +143,42 @@ class IntegrityChecker:
             lacks, foreign = dict(self._lacks), sorted(path.name for path in self._foreign)
             damaged = sorted(path.name for path in self._damaged if path.name not in lacks)
             missing = set(self._missing) - {lack.number for lack in lacks.values()}
-        problems = []
+        problems: list[str] = []
         if lacks:
-            problems.append(f"{_in_words(list(lacks.values()))}: check the disk. {self._remedy}")
+            problems.append(
+                coded(
+                    "log-part-lost",
+                    "A part of the log is lost: {lost}: check the disk. {remedy}",
+                    lost=_in_words(list(lacks.values())),
+                    remedy=self._remedy,
+                )
+            )
         if foreign:
             problems.append(
-                f"Files in the log's folder are no segments of this log and are left out "
-                f"({', '.join(foreign)}): see who put them there, and move them away"
+                coded(
+                    "log-foreign-files",
+                    "Files in the log's folder are no segments of this log and are left out "
+                    "({files}): see who put them there, and move them away",
+                    files=", ".join(foreign),
+                )
             )
         if damaged:
-            names = ", ".join(damaged)
             problems.append(
-                f"A part of the log cannot be read any more ({names}): check the disk. "
-                f"{self._remedy}"
+                coded(
+                    "log-damaged",
+                    "A part of the log cannot be read any more ({files}): check the disk. {remedy}",
+                    files=", ".join(damaged),
+                    remedy=self._remedy,
+                )
             )
         if missing:
-            numbers = ", ".join(map(str, sorted(missing)))
             problems.append(
-                f"Files of the log are gone, by their numbers {numbers}: check the disk, restore "
-                "them from a backup, and start the station again"
+                coded(
+                    "log-files-gone",
+                    "Files of the log are gone, by their numbers {segments}: check the disk, "
+                    "restore them from a backup, and start the station again",
+                    segments=", ".join(map(str, sorted(missing))),
+                )
             )
         return tuple(problems)
 
@@ -168,4 +186,4 @@ class IntegrityChecker:
 def _in_words(lacks: Sequence[LogGap]) -> str:
     more = len(lacks) - _MOST_NAMED
     problems = "; ".join(map(str, lacks[:_MOST_NAMED]))
-    return f"A part of the log is lost: {problems}{f'; and {more} more' if more > 0 else ''}"
+    return f"{problems}{f'; and {more} more' if more > 0 else ''}"

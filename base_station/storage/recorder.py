@@ -19,6 +19,7 @@ from threading import Condition, Lock, RLock
 
 from shared.channels import OPERATOR, Qos, parse_key
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import Measure, coded, join_texts
 from shared.errors import LogError, UnknownChannelError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
@@ -75,8 +76,9 @@ def _mended(folder: Path) -> tuple[Recovery, ...]:
         return ()
 
 
-def _clock_time(t_ns: int) -> str:
-    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%H:%M:%S}"
+def _clock_time(t_ns: int) -> Measure:
+    t_s = t_ns // NS_PER_S
+    return Measure(t_s, f"{datetime.fromtimestamp(t_s, UTC):%H:%M:%S}")
 
 
 def _ignore(_: SegmentInfo, __: str) -> None:
@@ -131,7 +133,7 @@ class Recorder:
         self._ending = False  # behind the records in the queue the segment is complete
         self._refused = 0
         self._refused_from_ns = self._refused_until_ns = 0
-        self._failure = ""
+        self._failure: str = ""
         self._turned_ns = self._received_ns = self._looked_ns = clock.monotonic_ns()
         self._last_t_ns = 0  # log time of the last record
         self._taken = 0
@@ -199,21 +201,32 @@ class Recorder:
             return self._failure
         missing = ""
         if self.lost:  # reported until the station starts anew
-            missing = (
-                f"the disk did not keep up: {self.lost} records are missing in the log, from "
-                f"{_clock_time(self._refused_from_ns)} to {_clock_time(self._refused_until_ns)} UTC"
+            missing = coded(
+                "log-records-missing",
+                "the disk did not keep up: {lost} records are missing in the log, from "
+                "{from_utc_s} to {until_utc_s} UTC",
+                lost=self.lost,
+                from_utc_s=_clock_time(self._refused_from_ns),
+                until_utc_s=_clock_time(self._refused_until_ns),
             )
-        hangs = f"{self.folder} cannot be written: its disk does not answer; check it"
-        problems = (missing, hangs if self.hangs else self._writer.problem)
-        return "; ".join(filter(None, problems))
+        hangs = coded(
+            "log-disk-hangs",
+            "{folder} cannot be written: its disk does not answer; check it",
+            folder=str(self.folder),
+        )
+        return join_texts((missing, hangs if self.hangs else self._writer.problem))
 
     @property
     def little_room(self) -> str:
         """That the disk will soon take nothing, as a sentence for a person; empty: it will."""
         if self._disk_free_bytes >= _LITTLE_FREE_BYTES:
             return ""
-        free_mb = self._disk_free_bytes / 1e6
-        return f"only {free_mb:.0f} MB are free for the log in {self.folder}: free the disk"
+        return coded(
+            "log-little-room",
+            "only {free_mb:.0f} MB are free for the log in {folder}: free the disk",
+            free_mb=self._disk_free_bytes / 1e6,
+            folder=str(self.folder),
+        )
 
     @property
     def is_behind(self) -> bool:
@@ -307,7 +320,11 @@ class Recorder:
             self._record()
         except Exception as error:
             logger.exception("the recorder stopped")
-            self._failure = f"the recorder stopped and nothing is logged ({error!r}): restart it"
+            self._failure = coded(
+                "recorder-stopped",
+                "the recorder stopped and nothing is logged ({error}): restart it",
+                error=repr(error),
+            )
             self._worker.stop()
             with self._news:
                 self._news.notify_all()

@@ -13,6 +13,7 @@ from threading import Lock
 from base_station.core.state.message_stream import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ
 from base_station.process.token_bucket import TokenBucket
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.messages.station import ReportProblem
 
 MESSAGES_AT_ONCE = 250_000
@@ -22,11 +23,6 @@ URGENT_BYTES_AT_ONCE, URGENT_BYTES_PER_S = 4_000_000, 200_000  # an alert has so
 _REPORTED_AFTER_NS = 3 * NS_PER_S  # of waiting
 _OVER_AFTER_NS = 30 * NS_PER_S
 _PART = "journal share "  # and the unit
-_TEXT = (
-    f"{{0}}'s journal brings more than a unit sends in hours ({MESSAGES_AT_ONCE:,} messages, "
-    f"{BYTES_AT_ONCE / 1e6:.0f} MB or {ALERTS_AT_ONCE} alerts): the rest is fetched slowly. If it "
-    "was not out of reach for long, switch it off, or revoke it: muster pki revoke {0}"
-)
 
 
 class _Unit:
@@ -91,10 +87,10 @@ class JournalRateLimit:
                 for who, (since, last) in self._waits.items()
                 if last - since >= _REPORTED_AFTER_NS
             ]
-        parts = {f"{_PART}{unit_id}": _TEXT.format(unit_id) for unit_id in throttled}
+        parts = {f"{_PART}{unit_id}": _text(unit_id) for unit_id in throttled}
         for part, text in parts.items():
             if part not in known:
-                yield ReportProblem(part, text)
+                yield ReportProblem.of(part, text)
         for part in [one for one in known if one.startswith(_PART) and one not in parts]:
             yield ReportProblem(part, "")
 
@@ -103,3 +99,16 @@ class JournalRateLimit:
         if unit is None:
             unit = self._units[unit_id] = _Unit(self._clock.monotonic_ns())
         return unit
+
+
+def _text(unit_id: str) -> str:
+    return coded(
+        "journal-floods",
+        "{unit_id}'s journal brings more than a unit sends in hours ({most:,} messages, "
+        "{most_mb:.0f} MB or {most_alerts} alerts): the rest is fetched slowly. If it was not out "
+        "of reach for long, switch it off, or revoke it: muster pki revoke {unit_id}",
+        unit_id=unit_id,
+        most=MESSAGES_AT_ONCE,
+        most_mb=BYTES_AT_ONCE / 1e6,
+        most_alerts=ALERTS_AT_ONCE,
+    )

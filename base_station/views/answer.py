@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import get_type_hints
 
 import msgspec
-from pydantic import GetCoreSchemaHandler, create_model
+from pydantic import Field, GetCoreSchemaHandler, create_model
 from pydantic_core import CoreSchema, core_schema
 
 from shared.clock import NS_PER_MS
@@ -23,11 +23,17 @@ class Answer(msgspec.Struct, frozen=True):
         hints = get_type_hints(cls)
         omits = cls.__struct_config__.omit_defaults
         fields = {
-            field.name: (hints[field.name], field.default if omits and not field.required else ...)
+            field.name: (hints[field.name], _default(field) if omits else ...)
             for field in msgspec.structs.fields(cls)
         }
         model = create_model(cls.__name__, __doc__=cls.__doc__, **fields)  # type: ignore[call-overload]
         return core_schema.no_info_before_validator_function(msgspec.to_builtins, handler(model))
+
+
+def _default(field: msgspec.structs.FieldInfo) -> object:
+    if field.default_factory is not msgspec.NODEFAULT:
+        return Field(default_factory=field.default_factory)
+    return ... if field.required else field.default
 
 
 def to_ms(t_ns: int) -> int:

@@ -14,6 +14,7 @@ from base_station.storage.db.known_people import PersonLookup, shown_text
 from base_station.storage.db.models import AlarmRow as StoredAlarm
 from base_station.views.alarm_parameters import parameters_view, stored_parameters_view
 from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.text_code import text_code_view
 from base_station.views.units import unit_views
 from base_station.views.wire import (
     AlarmView,
@@ -35,6 +36,7 @@ from base_station.views.wire import (
     Snapshot,
     StandbyView,
 )
+from shared.coded_text import NO_CODE, code_of_text, coded
 from shared.geo import Anchor
 from shared.messages import AlarmChange, ExternalKind, ExternalMarker
 from shared.messages.station import NoteDispatch
@@ -247,21 +249,35 @@ def _external_view(site_id: str, anchor: Anchor, marker: ExternalMarker) -> Exte
 
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
-    problems = [*state.problems.values(), *facts.problems]
+    problems = [*facts.problems]
     plans = [site.plan for site in state.sites.values() if site.plan is not None]
     problems += [plan.damage for plan in plans if plan.damage]
     if unkept := unkept_problem(state):
         problems.append(unkept)
     if counts.undecodable:
         problems.append(
-            f"{counts.undecodable} messages could not be read; last {counts.last_undecodable}"
+            coded(
+                "messages-unreadable",
+                "{count} messages could not be read; last {last}",
+                count=counts.undecodable,
+                last=counts.last_undecodable,
+            )
         )
     if counts.unregistered_dropped:
         problems.append(
-            f"{counts.unregistered_dropped} messages of more unregistered units than are shown"
+            coded(
+                "unregistered-messages",
+                "{count} messages of more unregistered units than are shown",
+                count=counts.unregistered_dropped,
+            )
         )
+    logged = state.problem_codes
     return HealthView(
-        problems=tuple(problems),
+        problems=(*state.problems.values(), *map(str, problems)),
+        problem_codes=(
+            *(text_code_view(logged.get(part, NO_CODE)) for part in state.problems),
+            *(text_code_view(code_of_text(one)) for one in problems),
+        ),
         messages=counts.messages,
         undecodable=counts.undecodable,
         unknown_units=sum(not unit.registered for unit in state.units.values()),

@@ -113,6 +113,11 @@ class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
     fault: str | None = None  # text of the unit, its agent or the station
     part: str | None = None  # of the station, that fails
     calibrated_s: int | None = None  # UTC seconds
+    fault_code: str | None = None  # of the sentence in ``fault``, where it has one
+    fault_texts: dict[str, str] = msgspec.field(
+        default_factory=dict
+    )  # parameters of ``fault_code``, by name
+    fault_numbers: dict[str, float] = msgspec.field(default_factory=dict)
 
 
 class AlarmView(Answer, frozen=True):
@@ -401,6 +406,14 @@ class ArchiveView(Answer, frozen=True):
     text: str  # for a person: why nothing can be copied; empty: all is well
 
 
+class TextCodeView(Answer, frozen=True):
+    """Code and parameters of a sentence, from which a console makes it in its own language."""
+
+    code: str  # empty: there is the sentence alone
+    texts: dict[str, str]  # parameters, by name
+    numbers: dict[str, float]  # with their units in their names
+
+
 class HealthView(Answer, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -421,6 +434,7 @@ class HealthView(Answer, frozen=True):
     radio: tuple[RadioView, ...] = ()  # channels whose audio is recorded
     archive: ArchiveView | None = None  # None: incidents are archived by a command alone
     reading: float | None = None  # share of its log; the last stored state is shown
+    problem_codes: tuple[TextCodeView, ...] = ()  # of ``problems``, in their order
 
 
 class GapView(Answer, frozen=True):

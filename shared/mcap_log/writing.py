@@ -13,6 +13,7 @@ from typing import Any
 from mcap.records import Attachment, Channel, Metadata, Schema
 
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.folder import segment_path
@@ -218,10 +219,24 @@ class SegmentWriter:
         """Reason that records do not reach the disk, as a sentence; empty: they do."""
         if self._trouble is None:
             return ""
-        lost = f", {self.lost} records are lost" if self.lost else ""
-        return (
-            f"the log cannot be written to {self._folder} ({self._trouble.strerror}): "
-            f"{self.waiting_bytes / 1e6:.1f} MB wait in memory{lost}; free or mend the disk"
+        error, waiting_mb = self._trouble.strerror or "", self.waiting_bytes / 1e6
+        if self.lost:
+            return coded(
+                "log-records-lost",
+                "the log cannot be written to {folder} ({error}): {waiting_mb:.1f} MB wait in "
+                "memory, {lost} records are lost; free or mend the disk",
+                folder=str(self._folder),
+                error=error,
+                waiting_mb=waiting_mb,
+                lost=self.lost,
+            )
+        return coded(
+            "log-waits",
+            "the log cannot be written to {folder} ({error}): {waiting_mb:.1f} MB wait in memory; "
+            "free or mend the disk",
+            folder=str(self._folder),
+            error=error,
+            waiting_mb=waiting_mb,
         )
 
     @property

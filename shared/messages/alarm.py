@@ -34,6 +34,11 @@ class AlarmParameters(msgspec.Struct, frozen=True, omit_defaults=True):
     fault: str | None = None  # in words of the unit, its agent or the station
     part: str | None = None  # of the station, that fails
     calibrated_s: int | None = None  # UTC seconds
+    fault_code: str | None = None  # of the sentence in ``fault``, where it has one
+    fault_texts: dict[str, str] = msgspec.field(
+        default_factory=dict
+    )  # parameters of ``fault_code``, by name
+    fault_numbers: dict[str, float] = msgspec.field(default_factory=dict)
 
 
 NO_PARAMETERS = AlarmParameters()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from shared.coded_text import code_of_text
 from shared.messages.command import CommandKind
 from shared.messages.fields import get_fields, put_fields
 from shared.messages.header import Header
@@ -136,6 +137,15 @@ class ReportProblem(msgspec.Struct, frozen=True):
 
     part: str  # "log", "store" ...
     text: str  # a sentence for a person
+    code: str = ""  # of the sentence; empty: of an earlier version
+    texts: dict[str, str] = msgspec.field(default_factory=dict)  # parameters of the code, by name
+    numbers: dict[str, float] = msgspec.field(default_factory=dict)
+
+    @staticmethod
+    def of(part: str, text: str) -> ReportProblem:
+        """With the code of the text, where it has one."""
+        code = code_of_text(text)
+        return ReportProblem(part, str(text), code.code, code.texts, code.numbers)
 
 
 class SendCommand(msgspec.Struct, frozen=True):

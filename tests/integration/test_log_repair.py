@@ -18,6 +18,7 @@ from base_station.storage.recorder import Recorder
 from shared.bus_memory import MemoryRouter
 from shared.channels import FUSED, POSITION
 from shared.clock import SystemClock
+from shared.coded_text import Term
 from shared.errors import LogError
 from shared.mcap_log import LogRecord, SegmentPolicy, read_log
 from shared.messages import STATION_ID
@@ -50,7 +51,7 @@ class HaController:
         disk = LogFeed(self.theirs.folder, self.theirs.flush)
         server = EventServer("b", router.attach_station(), disk)
         closing_all.callback(server.close)
-        self.check = IntegrityChecker("It is mended.")
+        self.check = IntegrityChecker(Term("restore", "It is mended."))
         self.mended_ns: list[int] = []
         self.other: str | None = "b"
         self.mending = LogRepair(

@@ -58,6 +58,7 @@ _DEPARTMENT_HEAD: Final = """\
  * Generated from `base_station/department/answers.py`, which describes every field; after a change
  * there run `python -m tests.rig.console_types`.
  */
+import type { AlarmParametersView, TextCodeView } from "../wire";
 """
 _SCHEMA_NAMES: Final = {
     "integer": "number",

@@ -49,6 +49,9 @@ export interface AlarmParametersView {
   fault?: string | null;
   part?: string | null;
   calibrated_s?: number | null;
+  fault_code?: string | null;
+  fault_texts?: Record<string, string>;
+  fault_numbers?: Record<string, number>;
 }
 
 export interface AlarmWithLife {
@@ -333,6 +336,7 @@ export interface Health {
   radio: RadioView[];
   archive: ArchiveView | null;
   reading: number | null;
+  problem_codes: TextCodeView[];
   consoles: number;
   segments: LogSegmentAnswer[];
 }
@@ -829,6 +833,12 @@ export interface StartForm {
   note?: string;
   unit_ids: string[];
   t_ms?: number;
+}
+
+export interface TextCodeView {
+  code: string;
+  texts: Record<string, string>;
+  numbers: Record<string, number>;
 }
 
 export interface ThresholdCrossing {

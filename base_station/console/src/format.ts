@@ -6,7 +6,6 @@ import type {
   ArchiveView,
   ClockView,
   ForwarderView,
-  HealthView,
   PositionView,
   PreflightView,
   SensorTemperatureView,
@@ -240,12 +239,6 @@ export function place(at: { north_m: number; east_m: number }): string {
     at.north_m < 0 ? t("measure.south", along) : t("measure.north", along),
     at.east_m < 0 ? t("measure.west", across) : t("measure.east", across),
   ]);
-}
-
-/** What is wrong with the station, sentence by sentence. */
-export function problemsOf(health: HealthView): string[] {
-  if (!health.insecure) return health.problems;
-  return [...health.problems, t("station.not_encrypted")];
 }
 
 /** Whether somebody's place goes by satellites, and why not. */

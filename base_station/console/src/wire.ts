@@ -70,6 +70,9 @@ export interface AlarmParametersView {
   fault?: string;
   part?: string;
   calibrated_s?: number;
+  fault_code?: string;
+  fault_texts?: Record<string, string>;
+  fault_numbers?: Record<string, number>;
 }
 
 export interface AlarmView {
@@ -316,6 +319,12 @@ export interface ArchiveView {
   text: string;
 }
 
+export interface TextCodeView {
+  code: string;
+  texts: Record<string, string>;
+  numbers: Record<string, number>;
+}
+
 export interface HealthView {
   problems: string[];
   messages: number;
@@ -334,6 +343,7 @@ export interface HealthView {
   radio: RadioView[];
   archive: ArchiveView | null;
   reading: number | null;
+  problem_codes: TextCodeView[];
 }
 
 export interface GapView {

@@ -15,6 +15,7 @@ import type {
 
 export const HEALTH: HealthView = {
   problems: [],
+  problem_codes: [],
   messages: 0,
   undecodable: 0,
   unknown_units: 0,

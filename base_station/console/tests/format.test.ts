@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import * as format from "../src/format";
+import { problemsOf } from "../src/live/codedText";
 import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
 describe("words", () => {
@@ -175,8 +176,8 @@ describe("words", () => {
   });
 
   it("count a link that is not encrypted among the problems", () => {
-    expect(format.problemsOf(HEALTH)).toEqual([]);
-    const both = format.problemsOf({ ...HEALTH, problems: ["The disk is full"], insecure: true });
+    expect(problemsOf(HEALTH)).toEqual([]);
+    const both = problemsOf({ ...HEALTH, problems: ["The disk is full"], insecure: true });
     expect(both[0]).toBe("The disk is full");
     expect(both[1]).toContain("Not encrypted");
   });

@@ -24,6 +24,7 @@ from base_station.core.alarms.thresholds import Thresholds, with_thresholds
 from base_station.core.person_references import without_numbers
 from base_station.core.state import ERASED_TEXT, Alarm, StationState, UnitState
 from shared.clock import NS_PER_MS, NS_PER_S
+from shared.coded_text import TextCode, coded
 from shared.messages import (
     AlarmParameters,
     AlarmState,
@@ -36,7 +37,7 @@ from shared.messages import (
     Temperature,
 )
 from shared.messages.alarm import NO_PARAMETERS
-from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
+from shared.messages.station import AcknowledgeAlarm, ReportProblem, ResolveAlarm
 
 # Frequent messages: before the next tick only those rules judge that are triggered by them.
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
@@ -76,12 +77,14 @@ class AlarmManager:
             except Exception as error:  # noqa: BLE001  # one bad rule must not silence the others
                 part = f"rule-{rule.name}"
                 if part not in state.problems:  # the same for every unit
-                    yield from self.report_problem(
-                        state,
-                        part,
-                        f"The alarm rule {rule.name!r} failed for {unit.unit_id} and did not "
-                        f"judge: {error!r}",
+                    text = coded(
+                        "rule-failed",
+                        "The alarm rule {rule!r} failed for {unit_id} and did not judge: {error}",
+                        rule=rule.name,
+                        unit_id=unit.unit_id,
+                        error=repr(error),
                     )
+                    yield from self.report_problem(state, ReportProblem.of(part, text))
                 continue
             if verdict is None:
                 if current is not None:  # the rule cannot judge: no condition has lasted
@@ -99,21 +102,23 @@ class AlarmManager:
         """True where a rule is triggered by this kind of message before the next tick."""
         return bool(self._rules_by_message.get(came, self._rules))
 
-    def report_problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
+    def report_problem(self, state: StationState, report: ReportProblem) -> Iterator[Alarm]:
         """A part of the station itself fails, or fails in another way: a shorter text or other
         numbers are no other way.  Without a text, it is well again.
         """
+        part, text = report.part, report.text
         key = f"{STATION_RULE}|{part}"
         current = state.alarms.get(key)
         standing = current if current is not None and current.is_open else None
         if text:
             state.problems[part] = text
+            state.problem_codes[part] = TextCode(report.code, report.texts, report.numbers)
             if standing is None:
-                yield self._raise(state, key, STATION_RULE, "", _station_fault(state, part, text))
+                yield self._raise(state, key, STATION_RULE, "", _station_fault(state, report))
             elif without_numbers(text) not in without_numbers(standing.text):
-                yield _raise_anew(state, standing, _station_fault(state, part, text))
+                yield _raise_anew(state, standing, _station_fault(state, report))
         else:
-            state.problems.pop(part, None)
+            _end_problem(state, part)
             if standing is not None:
                 yield _resolve(state, standing, "works again")
 
@@ -136,7 +141,7 @@ class AlarmManager:
         alarm.resolved_while_active = True
         state.alarms.pop(alarm.alarm_id, None)  # where it stood beside a newer one
         if alarm.rule == STATION_RULE:
-            state.problems.pop(alarm.level, None)
+            _end_problem(state, alarm.level)
         alarm.reason, alarm.note = action.reason, action.note
         return _resolve(state, alarm, by)
 
@@ -194,9 +199,20 @@ class AlarmManager:
         return alarm
 
 
-def _station_fault(state: StationState, part: str, text: str) -> Finding:
-    parameters = AlarmParameters(part=part, fault=text)
-    return Finding(part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
+def _end_problem(state: StationState, part: str) -> None:
+    state.problems.pop(part, None)
+    state.problem_codes.pop(part, None)
+
+
+def _station_fault(state: StationState, report: ReportProblem) -> Finding:
+    parameters = AlarmParameters(
+        part=report.part,
+        fault=report.text,
+        fault_code=report.code or None,
+        fault_texts=report.texts,
+        fault_numbers=report.numbers,
+    )
+    return Finding(report.part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
 
 
 def _worst(so_far: float | None, finding: Finding) -> float | None:

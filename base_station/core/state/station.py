@@ -12,6 +12,7 @@ from base_station.core.state.site import OWN_SITE_ID, SiteState
 from base_station.core.state.unit import UnitState
 from base_station.fusion.odometry.path_history import PathHistory
 from shared.channels import tracked_unit
+from shared.coded_text import TextCode
 from shared.errors import UserError
 from shared.messages import STATION_ID, ExternalMarker, Header
 from shared.messages.station import TakeOver
@@ -58,6 +59,7 @@ class StationState(msgspec.Struct):
     thresholds: dict[str, float] = msgspec.field(default_factory=dict)  # of alarm rules
     fuser: str = ""  # name of the fuser of all units; empty: the usual one
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
+    problem_codes: dict[str, TextCode] = msgspec.field(default_factory=dict)  # of those, likewise
     idempotency_records: dict[str, IdempotencyRecord] = msgspec.field(
         default_factory=dict
     )  # by key, oldest first

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base_station.core.state import StationState
+from shared.coded_text import coded
 
 
 def unkept_problem(state: StationState) -> str:
@@ -12,7 +13,9 @@ def unkept_problem(state: StationState) -> str:
     numbers = ", ".join(f"{name} {count}" for name, count in counts.items() if count)
     if not numbers:
         return ""
-    return (
-        f"Messages that a unit's journal had no room for, since the unit started: {numbers}. Where "
-        "the link lost them too they are gone: free or replace the unit's disk"
+    return coded(
+        "messages-not-kept",
+        "Messages that a unit's journal had no room for, since the unit started: {counts}. Where "
+        "the link lost them too they are gone: free or replace the unit's disk",
+        counts=numbers,
     )

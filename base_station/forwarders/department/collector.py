@@ -18,10 +18,11 @@ from base_station.forwarders.department.summary import incident_summary, person_
 from base_station.forwarders.mailbox import Mailbox
 from base_station.storage.db.known_people import FORGOTTEN, PersonLookup
 from base_station.storage.projection import Projection
-from base_station.views.wire import AnchorView, Delta, IncidentView, Snapshot, UnitView
+from base_station.views.wire import AnchorView, Delta, HealthView, IncidentView, Snapshot, UnitView
 from shared.channels import ALARM
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.codec import decode
+from shared.coded_text import TextCode
 from shared.errors import WireError
 from shared.messages import STATION_ID, AlarmChange
 
@@ -44,6 +45,7 @@ class ReportCollector:
         self._units: dict[str, UnitView] = {}
         self._incidents: tuple[IncidentView, ...] = ()
         self._problems: tuple[str, ...] = ()
+        self._problem_codes: tuple[TextCode, ...] = ()
         self._anchor: AnchorView | None = None
         self._reported: dict[str, bytes] = {}
         self._noted_ns = 0
@@ -106,6 +108,7 @@ class ReportCollector:
             waiting=self._outbox.waiting,
             lat_deg=None if anchor is None else anchor.lat_deg,
             lon_deg=None if anchor is None else anchor.lon_deg,
+            problem_codes=self._problem_codes,
         )
 
     def _take_picture(self) -> None:
@@ -115,12 +118,18 @@ class ReportCollector:
             self._has_picture = True
             self._units = {unit.unit_id: unit for unit in picture.units}
             self._incidents = picture.incidents
-            self._problems = picture.health.problems
+            self._note_problems(picture.health)
             anchors = (picture.anchor, *(one.anchor for one in picture.sites))
             self._anchor = next((one for one in anchors if one is not None), None)
         self._units.update(changes.units)
         if changes.health is not None:
-            self._problems = changes.health.problems
+            self._note_problems(changes.health)
+
+    def _note_problems(self, health: HealthView) -> None:
+        self._problems = health.problems
+        self._problem_codes = tuple(
+            TextCode(one.code, one.texts, one.numbers) for one in health.problem_codes
+        )
 
     def _alarms_of_log(self) -> list[NewEvent]:
         """Alarms that were decided and not collected before the station ended."""

@@ -58,6 +58,8 @@ def alarm_event(change: AlarmChange) -> NewEvent:
         by=change.by,
         raised_ms=to_ms(change.raised_ns),
         changed_ms=to_ms(t_ns),
+        code=change.code,
+        parameters=change.parameters,
     )
     subject = f"alarm/{change.alarm_id}"
     event_id = f"{subject}/{t_ns}/{state}/{change.level}"

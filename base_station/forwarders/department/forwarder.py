@@ -21,6 +21,7 @@ from shared.bus import Bus
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import Qos, department_events_key, department_summary_key
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.enrolment import Enrolment, Holder, read_enrolment
 from shared.errors import ConfigError, WireError
 from shared.tls import validity_problem
@@ -105,9 +106,13 @@ class DepartmentForwarder:
         away_s = self._status.away_s
         if away_s < self._config.alarm_after_s:
             return ""
-        return (
-            f"The department ({', '.join(self._enrolment.connect)}) has been away for "
-            f"{away_s:.0f} s: {self._status.reason}. What it misses is kept and sent later"
+        return coded(
+            "department-away",
+            "The department ({addresses}) has been away for {away_s:.0f} s: {reason}. What it "
+            "misses is kept and sent later",
+            addresses=", ".join(self._enrolment.connect),
+            away_s=away_s,
+            reason=self._status.reason,
         )
 
     # ---- in the collecting thread

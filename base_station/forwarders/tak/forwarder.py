@@ -22,6 +22,7 @@ from base_station.storage.projection import Projection
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.worker import Worker
 
 _FIRST_RETRY_S = 1.0
@@ -98,9 +99,13 @@ class TakForwarder:
         away_s = self._status.away_s
         if away_s < self._config.alarm_after_s:
             return ""
-        return (
-            f"The TAK connection {self._name!r} ({self._config.url}) has been away for "
-            f"{away_s:.0f} s: it {self._status.reason or 'does not answer'}"
+        return coded(
+            "tak-away",
+            "The TAK connection {name!r} ({url}) has been away for {away_s:.0f} s: it {reason}",
+            name=self._name,
+            url=self._config.url,
+            away_s=away_s,
+            reason=self._status.reason or "does not answer",
         )
 
     def _wake(self) -> None:

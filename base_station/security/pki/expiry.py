@@ -9,12 +9,15 @@ from pathlib import Path
 from base_station.security.pki.folder import STATION_NAME, PkiFolder
 from base_station.security.pki.registry import Entry, Registry
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import Measure, Term, coded
 from shared.enrolment import Holder
 from shared.errors import ConfigError
 from shared.tls import parse_certificate
 
 EXPIRY_WARNING = timedelta(days=30)
 _READ_AGAIN_NS = 60 * NS_PER_S
+
+_THIS_STATION = Term("this_station", "this station")
 
 
 class ExpiryWatch:
@@ -68,7 +71,8 @@ class ConsoleExpiry:
         if self._ends is None or self._ends > now + EXPIRY_WARNING:
             return ()
         command = f"put another one into {self._file}, with its key, and start the station again"
-        return (_ending("the console", self._ends, now, command),)
+        text = _ending(Term("console", "the console"), "", self._ends, now, command)
+        return (text,)
 
 
 def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
@@ -76,10 +80,14 @@ def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
     begins = max((e.valid_from for e in registry.entries if e.revoked is None), default=now)
     if begins <= now:
         return ()
-    return (
-        f"This machine's clock is at {now:%Y-%m-%d}, and there are certificates that begin on "
-        f"{begins:%Y-%m-%d}: set it; no link is made with them before",
+    text = coded(
+        "clock-before-certificates",
+        "This machine's clock is at {now_utc_s}, and there are certificates that begin on "
+        "{begins_utc_s}: set it; no link is made with them before",
+        now_utc_s=_day(now),
+        begins_utc_s=_day(begins),
     )
+    return (text,)
 
 
 def about_to_expire(
@@ -97,29 +105,51 @@ def about_to_expire(
 
 def _expiry_sentence(entry: Entry, now: datetime, here: str | None) -> str:
     if entry.holder is Holder.STATION and entry.name == STATION_NAME:
-        who = "this station" if entry.common_name == here else "the first station"
-        command = "muster pki renew-station" + ("" if entry.common_name == here else " there")
+        is_here = entry.common_name == here
+        holder = _THIS_STATION if is_here else Term("first_station", "the first station")
+        command = "muster pki renew-station" + ("" if is_here else " there")
     elif entry.holder is Holder.STATION:
-        who = "this station" if entry.common_name == here else f"station {entry.name}"
+        is_here = entry.common_name == here
+        holder = _THIS_STATION if is_here else Term("station", f"station {entry.name}")
         command = (
             f"muster pki enroll-station {entry.name} --host ADDRESS at the first station, and "
             f"muster pki join at {entry.name}"
         )
     elif entry.holder is Holder.OPERATOR:
-        who, command = f"operator {entry.name}", f"muster pki renew --operator {entry.name}"
+        holder = Term("operator", f"operator {entry.name}")
+        command = f"muster pki renew --operator {entry.name}"
     elif entry.holder is Holder.TRACKER:
-        who, command = f"{entry.name}'s tracking agent", f"muster pki renew --tracker {entry.name}"
+        holder = Term("tracker", f"{entry.name}'s tracking agent")
+        command = f"muster pki renew --tracker {entry.name}"
     else:
-        who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
-    return _ending(who, entry.valid_to, now, command)
+        holder, command = Term("unit", f"unit {entry.name}"), f"muster pki renew {entry.name}"
+    return _ending(holder, entry.name, entry.valid_to, now, command)
 
 
-def _ending(who: str, ends: datetime, now: datetime, command: str) -> str:
+def _ending(holder: Term, name: str, ends: datetime, now: datetime, command: str) -> str:
     if ends <= now:
-        return f"The certificate of {who} expired on {ends:%Y-%m-%d}: {command}"
+        return coded(
+            "certificate-expired",
+            "The certificate of {holder} expired on {ends_utc_s}: {command}",
+            holder=holder,
+            ends_utc_s=_day(ends),
+            command=command,
+            name=name,
+        )
     days = (ends - now).days
     left = "in less than a day" if days < 1 else f"in {days} day{'s' if days > 1 else ''}"
-    return f"The certificate of {who} expires {left}: {command}"
+    return coded(
+        "certificate-expires",
+        "The certificate of {holder} expires {days}: {command}",
+        holder=holder,
+        days=Measure(days, left),
+        command=command,
+        name=name,
+    )
+
+
+def _day(day: datetime) -> Measure:
+    return Measure(day.timestamp(), f"{day:%Y-%m-%d}")
 
 
 def _now(clock: Clock) -> datetime:

@@ -11,6 +11,7 @@ from datetime import UTC, datetime, timedelta
 
 from base_station.security.pki.folder import PkiFolder
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import Measure, coded
 from shared.errors import MusterError
 from shared.tls import TlsIdentity, parse_certificate
 
@@ -50,8 +51,11 @@ class Renewal:
         """Sentences for the console."""
         if not self._waits or self._ends is None:
             return ()
-        return (
+        text = coded(
+            "certificate-renewed",
             "The certificate of this station was renewed. The station starts again with it, which "
             "takes some seconds, when the incident is closed, or an hour before the one in use "
-            f"ends, at {self._ends:%H:%M} UTC on {self._ends:%Y-%m-%d}",
+            "ends, at {ends_utc_s}",
+            ends_utc_s=Measure(self._ends.timestamp(), f"{self._ends:%H:%M UTC on %Y-%m-%d}"),
         )
+        return (text,)

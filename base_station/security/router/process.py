@@ -15,6 +15,7 @@ from typing import Self
 import msgspec
 
 from base_station.security.router.refusals import RefusalSummary, refusal_problem
+from shared.coded_text import coded
 from shared.errors import BusError
 from shared.worker import Worker
 from shared.zenoh_settings import LOCAL_LINK, ClientEndpoint
@@ -24,7 +25,9 @@ logger = logging.getLogger(__name__)
 READY = "router ready"
 FAILED = "router failed: "
 _RESTART_AFTER_S = 1.0
-_ROUTER_DOWN = "The bus's router is away and is started again; no unit is linked"
+_ROUTER_DOWN = coded(
+    "router-away", "The bus's router is away and is started again; no unit is linked"
+)
 _STOP_TIMEOUT_S = 5.0
 _MEMORY_FOLDER = "/dev/shm"  # noqa: S108  # a folder of its owner's alone is made in it
 

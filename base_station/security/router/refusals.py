@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import msgspec
 
+from shared.coded_text import Term, coded
+
 _WINDOW_S = 60
 _MIN_REPORTED = 120  # in that time: as two units that try in vain once a second
 _MAX_NETWORKS = 4096  # that are counted apart in a second; further ones are counted together
@@ -86,9 +88,14 @@ def refusal_problem(refused: RefusalSummary) -> str:
     """A sentence for the console; empty where it is no matter."""
     if refused.in_window < _MIN_REPORTED:
         return ""
-    return (
-        f"{refused.in_window} connections to the bus were refused in the last minute "
-        f"({refused.total} since the router began), {refused.of_network} of them from "
-        f"{refused.network}, most for: {refused.reason}. Units are let in all the same; "
-        "see docs/howto/when-attacked.md"
+    return coded(
+        "connections-refused",
+        "{count} connections to the bus were refused in the last minute ({total} since the router "
+        "began), {of_network} of them from {network}, most for: {reason}. Units are let in all "
+        "the same; see docs/howto/when-attacked.md",
+        count=refused.in_window,
+        total=refused.total,
+        of_network=refused.of_network,
+        network=refused.network,
+        reason=Term(Refusal(refused.reason).name.lower(), refused.reason),
     )

@@ -8,8 +8,8 @@ clock over the department's when it reported.
 from __future__ import annotations
 
 from sqlalchemy import BigInteger, Integer, LargeBinary, MetaData
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
-from sqlalchemy.schema import UniqueConstraint
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
+from sqlalchemy.schema import ForeignKeyConstraint, UniqueConstraint
 
 SCHEMA_VERSION = 1
 
@@ -87,6 +87,24 @@ class ReportedAlarm(DepartmentBase):
     raised_ms: Mapped[int]
     changed_ms: Mapped[int]
     offset_ms: Mapped[int]
+    coded: Mapped[ReportedAlarmCode | None] = relationship(lazy="joined", viewonly=True)
+
+
+class ReportedAlarmCode(DepartmentBase):
+    """Code of an alarm's sentence; stations of an earlier version report none."""
+
+    __tablename__ = "department_alarm_codes"
+    __table_args__ = (
+        ForeignKeyConstraint(
+            ["station", "alarm_id"], ["department_alarms.station", "department_alarms.alarm_id"]
+        ),
+    )
+
+    station: Mapped[str] = mapped_column(primary_key=True)
+    alarm_id: Mapped[str] = mapped_column(primary_key=True)
+    code: Mapped[str]
+    parameters: Mapped[str]  # JSON of ``AlarmParameters``, people as references
+    changed_ms: Mapped[int]
 
 
 class ReportedIncident(DepartmentBase):

@@ -27,6 +27,7 @@ from base_station.storage.db.department_models import (
     DepartmentSchema,
     LastSummary,
     ReportedAlarm,
+    ReportedAlarmCode,
     ReportedEvent,
     ReportedIncident,
     ReportedPerson,
@@ -212,15 +213,19 @@ def _apply(session: Session, station: str, body: EventBody | None, offset_ms: in
 def _apply_alarm(session: Session, station: str, alarm: AlarmEvent, offset_ms: int) -> None:
     """A transition that comes late, from the other machine of a station, changes nothing."""
     current = {**msgspec.structs.asdict(alarm), "offset_ms": offset_ms}
-    session.execute(
-        insert_into(session, ReportedAlarm)
-        .values(station=station, **current)
-        .on_conflict_do_update(
-            index_elements=[ReportedAlarm.station, ReportedAlarm.alarm_id],
-            set_=current,
-            where=ReportedAlarm.changed_ms <= alarm.changed_ms,
+    parameters = msgspec.json.encode(current.pop("parameters")).decode()
+    code = {"code": current.pop("code"), "parameters": parameters}
+    coded = {"alarm_id": alarm.alarm_id, "changed_ms": alarm.changed_ms, **code}
+    for table, values in ((ReportedAlarm, current), (ReportedAlarmCode, coded)):
+        session.execute(
+            insert_into(session, table)
+            .values(station=station, **values)
+            .on_conflict_do_update(
+                index_elements=[table.station, table.alarm_id],
+                set_=values,
+                where=table.changed_ms <= alarm.changed_ms,
+            )
         )
-    )
 
 
 def _apply_incident(

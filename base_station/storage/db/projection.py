@@ -20,6 +20,7 @@ from base_station.storage.db.database import IN_MEMORY, Database
 from base_station.storage.db.projecting import project_into
 from base_station.storage.projection import Projection
 from base_station.storage.projection_mark import ProjectionMark
+from shared.coded_text import coded, join_texts
 from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
 from shared.worker import Worker
@@ -30,7 +31,10 @@ MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone kn
 
 _NO_NUMBER = "a position is no number"
 
-_MISSED = "What was decided while the database did not answer is being brought into it from the log"
+_MISSED = coded(
+    "database-catching-up",
+    "What was decided while the database did not answer is being brought into it from the log",
+)
 
 logger = logging.getLogger(__name__)
 
@@ -90,13 +94,15 @@ class SqlProjection:
     def problem(self) -> str:
         with self._changed:
             if self._dropped:
-                return (
-                    f"{self._dropped} changes did not get into the database "
-                    f"({self._drop_reason}); the log has them: run 'muster base rebuild' once the "
-                    "cause is gone"
+                return coded(
+                    "database-changes-dropped",
+                    "{count} changes did not get into the database ({reason}); the log has them: "
+                    "run 'muster base rebuild' once the cause is gone",
+                    count=self._dropped,
+                    reason=self._drop_reason,
                 )
             missed = _MISSED if self._missed else ""
-            return "; ".join(filter(None, (self._failure or self._store.problem, missed)))
+            return join_texts((self._failure or self._store.problem, missed))
 
     @property
     def is_behind(self) -> bool:

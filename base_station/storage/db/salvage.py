@@ -20,6 +20,7 @@ from base_station.storage.db.engines import DAMAGE, code_of
 from base_station.storage.db.models import IncidentTrails, TrackPoint
 from base_station.storage.db.reading import beside
 from base_station.storage.db.store import Store
+from shared.coded_text import coded
 from shared.durable_names import sync_folder
 from shared.errors import DiskFullError, StoreError
 
@@ -58,7 +59,11 @@ def loss_of(tables: Collection[str], *, alone: bool) -> str:
 def gone(*, alone: bool) -> str:
     """As ``Salvage.described``, of a file that is not there."""
     lost = loss_of(ONLY_HERE, alone=alone)
-    return f"The database was gone or empty and has been made again from the log; {lost}"
+    return coded(
+        "database-gone",
+        "The database was gone or empty and has been made again from the log; {loss}",
+        loss=lost,
+    )
 
 
 @dataclass(frozen=True)
@@ -76,9 +81,13 @@ class Salvage:
             if self.aside is not None
             else "The damaged file is kept, and set aside when there is room for another"
         )
-        return (
-            f"The database was damaged ({self.damage}) and has been made again from the log; "
-            f"{kept}. {file}; check the disk"
+        return coded(
+            "database-made-again",
+            "The database was damaged ({damage}) and has been made again from the log; {loss}. "
+            "{file}; check the disk",
+            damage=self.damage,
+            loss=kept,
+            file=file,
         )
 
 

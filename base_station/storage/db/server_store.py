@@ -24,6 +24,7 @@ from base_station.storage.db.models import Base
 from base_station.storage.db.server_address import ServerAddress
 from base_station.storage.db.server_engine import STATION_LOCK, STATION_WAIT_S, server_engines
 from base_station.storage.db.server_errors import is_away, store_error
+from shared.coded_text import coded, join_texts
 from shared.errors import DatabaseAwayError, StoreError
 
 _log = logging.getLogger(__name__)
@@ -31,10 +32,6 @@ _log = logging.getLogger(__name__)
 RETRY_S = 2.0  # between two looks whether the server is back
 TRY_S = 10.0  # one look takes less
 OLDEST_SERVER = 140_000  # in the form of server_version_num: 14.0
-_AWAY = (
-    "people are shown and commanded as before, and the log has everything; logins, past incidents, "
-    "users and people wait for the database; see that the server runs and can be reached"
-)
 
 
 class ServerStore:
@@ -45,7 +42,7 @@ class ServerStore:
 
         Raises StoreError where the server cannot be used, or a newer program made the tables.
         """
-        self.loss = ""
+        self.loss: str = ""
         self._is_station = is_station
         self._lock = threading.Lock()  # guards the fields below
         self._away = ""  # why the server does not answer
@@ -74,7 +71,14 @@ class ServerStore:
     @property
     def problem(self) -> str:
         away = self._away
-        return "; ".join(filter(None, (away and f"{away}; {_AWAY}", self.loss)))
+        text = away and coded(
+            "database-away",
+            "{reason}; people are shown and commanded as before, and the log has everything; "
+            "logins, past incidents, users and people wait for the database; see that the server "
+            "runs and can be reached",
+            reason=away,
+        )
+        return join_texts((text, self.loss))
 
     @property
     def in_memory(self) -> bool:

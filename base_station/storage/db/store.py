@@ -33,6 +33,7 @@ from base_station.storage.db.engines import (
 )
 from base_station.storage.db.memory_copy import MemoryCopy
 from base_station.storage.db.migrate import migrate
+from shared.coded_text import coded, join_texts
 from shared.errors import DiskFullError, DiskHangsError, StoreError
 
 _log = logging.getLogger(__name__)
@@ -72,7 +73,7 @@ class Store:
         self._memory: MemoryCopy | None = None
         self._tried_s = 0.0
         self._refused = 0
-        self.loss = ""  # missing data since it was made again, as a sentence for a person
+        self.loss: str = ""  # missing data since it was made again, as a sentence for a person
         self._damage = ""  # that was met since
         self._reason = no_room_beside_damaged  # why the disk takes nothing
         if no_room_beside_damaged:
@@ -111,23 +112,35 @@ class Store:
     @property
     def problem(self) -> str:
         """Problem of the database, as a sentence for a person; empty: none."""
-        damage = f"The database is damaged: {self._damage}" if self._damage else ""
-        return "; ".join(filter(None, (damage, self._disk_problem, self.loss)))
+        damage = self._damage and coded(
+            "database-damaged", "The database is damaged: {damage}", damage=self._damage
+        )
+        return join_texts((damage, self._disk_problem, self.loss))
 
     @property
     def _disk_problem(self) -> str:
         memory = self._memory
         if memory is not None:
-            tracks = "; trails of past incidents cannot be shown" if memory.lacks_tracks else ""
-            return (
-                f"The database is kept in memory, as its disk takes nothing: what is changed is "
-                f"written when it does, and lost if the station stops before{tracks}; "
-                f"{self._reason}"
+            if memory.lacks_tracks:
+                return coded(
+                    "database-in-memory-without-trails",
+                    "The database is kept in memory, as its disk takes nothing: what is changed "
+                    "is written when it does, and lost if the station stops before; trails of "
+                    "past incidents cannot be shown; {reason}",
+                    reason=self._reason,
+                )
+            return coded(
+                "database-in-memory",
+                "The database is kept in memory, as its disk takes nothing: what is changed is "
+                "written when it does, and lost if the station stops before; {reason}",
+                reason=self._reason,
             )
         if self._refused:
-            return (
-                f"{self._refused} changes that were made while the disk took nothing are not in "
-                "the database, as others were made there meanwhile: look through users and people"
+            return coded(
+                "database-changes-refused",
+                "{count} changes that were made while the disk took nothing are not in the "
+                "database, as others were made there meanwhile: look through users and people",
+                count=self._refused,
             )
         return ""
 

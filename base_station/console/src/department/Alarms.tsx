@@ -1,5 +1,6 @@
 import { age } from "../format";
 import { knownLabel, label, t } from "../language/translate";
+import { alarmText } from "../live/alarmText";
 import type { DepartmentAlarmView, DepartmentView } from "./answers";
 import { consoleUrl } from "./consoles";
 import { ConsoleLink, Section } from "./Section";
@@ -24,7 +25,7 @@ export function Alarms({ view }: { view: DepartmentView }) {
           </td>
           <td>{alarm.person === "" ? alarm.unit_id : alarm.person}</td>
           <td class={alarm.priority === GRAVEST ? "bad" : "doubtful"}>
-            {ruleLabel(alarm)} <span class="quiet">{alarm.text}</span>
+            {ruleLabel(alarm)} <span class="quiet">{alarmText(alarm)}</span>
           </td>
           <td>{stateText(alarm)}</td>
         </tr>

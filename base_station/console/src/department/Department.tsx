@@ -1,5 +1,6 @@
 /** The whole page; without a login only the form. */
 import { label, t } from "../language/translate";
+import { problemTexts } from "../live/codedText";
 import { LANGUAGE_CHOICES, languageChoice, type LanguageChoice } from "../language/choices";
 import { Login } from "../ui/Login";
 import { Alarms } from "./Alarms";
@@ -22,7 +23,7 @@ export function Department() {
         <button onClick={() => void leave()}>{t("account.log_out")}</button>
       </header>
       <main>
-        <Problems sentences={view.problems} />
+        <Problems sentences={problemTexts(view)} />
         <Alarms view={view} />
         <Incidents view={view} />
         <StationMap view={view} />

@@ -1,5 +1,6 @@
 import { age, duration } from "../format";
 import { t } from "../language/translate";
+import { problemTexts } from "../live/codedText";
 import type { DepartmentView, ReportingStationView } from "./answers";
 import { ConsoleLink, Section } from "./Section";
 
@@ -22,7 +23,7 @@ export function Stations({ view }: { view: DepartmentView }) {
           <Clock station={one} />
           <td>{t("department.people_in_incident", { people: one.people, inside: one.in_incident })}</td>
           <td>{one.waiting}</td>
-          <td class="quiet">{one.problems.join("; ")}</td>
+          <td class="quiet">{problemTexts(one).join("; ")}</td>
         </tr>
       ))}
     />

@@ -3,6 +3,7 @@
  * Generated from `base_station/department/answers.py`, which describes every field; after a change
  * there run `python -m tests.rig.console_types`.
  */
+import type { AlarmParametersView, TextCodeView } from "../wire";
 
 export interface ReportingStationView {
   station: string;
@@ -18,6 +19,7 @@ export interface ReportingStationView {
   problems: string[];
   lat_deg: number | null;
   lon_deg: number | null;
+  problem_codes: TextCodeView[];
 }
 
 export interface DepartmentIncidentView {
@@ -50,6 +52,8 @@ export interface DepartmentAlarmView {
   by: string;
   raised_ms: number;
   changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
 }
 
 export interface DepartmentView {
@@ -61,6 +65,7 @@ export interface DepartmentView {
   people: number;
   problems: string[];
   has_archive: boolean;
+  problem_codes: TextCodeView[];
 }
 
 export interface DepartmentPersonView {

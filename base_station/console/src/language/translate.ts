@@ -42,7 +42,7 @@ export function knownLabel(part: PartName, code: string): string | undefined {
 export function knownMessage(
   part: PartName,
   code: string,
-  values: Record<string, string>,
+  values: Record<string, string | number>,
 ): string | undefined {
   const message = knownLabel(part, code);
   return message === undefined ? undefined : String(parsed(message).format(values));

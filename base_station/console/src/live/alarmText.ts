@@ -3,6 +3,7 @@ import type { AlarmParametersView } from "../answers";
 import { duration, minutes, percent, temperature } from "../format";
 import { date, length, listed } from "../language/measures";
 import { knownMessage, label, t } from "../language/translate";
+import { codedText } from "./codedText";
 
 export interface AlarmSentence {
   code: string;
@@ -29,7 +30,7 @@ function valuesOf(code: string, given: AlarmParametersView): Record<string, stri
     battery: written(given.battery_fraction, percent),
     radius: written(given.radius_m, (m) => length(m, 0)),
     reasons: reasonsOf(code, given.reasons ?? []),
-    fault: given.fault ?? "",
+    fault: faultOf(given),
     calibrated: written(given.calibrated_s, (s) => date(s * 1000)),
   };
 }
@@ -37,6 +38,13 @@ function valuesOf(code: string, given: AlarmParametersView): Record<string, stri
 function subjectOf({ member, member_before: before }: AlarmParametersView): string {
   const name = member ?? "";
   return before === null || before === undefined ? name : t("alarm_subject.either", { member: name, before });
+}
+
+/** Of the station by its code; units and their agents report sentences alone. */
+function faultOf(given: AlarmParametersView): string {
+  const { fault, fault_code, fault_texts: texts, fault_numbers: numbers } = given;
+  const coded = { code: fault_code ?? "", texts: texts ?? {}, numbers: numbers ?? {} };
+  return codedText("problem", coded, fault ?? "");
 }
 
 function reasonsOf(code: string, reasons: readonly string[]): string {

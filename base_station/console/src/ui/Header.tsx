@@ -1,7 +1,8 @@
 import { isPast } from "../sessions";
 import { openDialog, openDispatch } from "../uiState";
 import type { Picture } from "../live/picture";
-import { clockTime, minutes, problemsOf, timeSince, zone } from "../format";
+import { clockTime, minutes, timeSince, zone } from "../format";
+import { problemsOf } from "../live/codedText";
 import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { IncidentSwitch } from "./IncidentSwitch";

@@ -1,5 +1,6 @@
 import { picture } from "../sessions";
-import { bytes, problemsOf } from "../format";
+import { bytes } from "../format";
+import { problemsOf } from "../live/codedText";
 import { number } from "../language/measures";
 import { t } from "../language/translate";
 import { Dialog } from "./Dialog";

@@ -1,7 +1,8 @@
 import { besideLive, liveIsPast, stopReplay, type Replay } from "../sessions";
 import { assess, openDialog } from "../uiState";
 import type { Picture } from "../live/picture";
-import { dateAndTime, problemsOf, timeSince, zone } from "../format";
+import { dateAndTime, timeSince, zone } from "../format";
+import { problemsOf } from "../live/codedText";
 import type { GapView } from "../wire";
 import { t } from "../language/translate";
 import { Icon } from "./Icon";

@@ -16,6 +16,7 @@ from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.recorder import Recorder
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
+from shared.coded_text import Term
 from shared.mcap_log import SegmentPolicy
 
 T0 = 1_800_000_000 * NS_PER_S
@@ -50,7 +51,7 @@ def flip(recorder: Recorder) -> Path:
 def test_later_damage_is_found_by_the_next_round(
     recorder: Recorder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    check = looked(IntegrityChecker(""), recorder)
+    check = looked(IntegrityChecker(Term("restore", "")), recorder)
     path = flip(recorder)
     assert looked(check, recorder, 100).damaged == ()
     monkeypatch.setattr("base_station.storage.integrity_checker._AGAIN_LOOKS", 50)
@@ -65,21 +66,21 @@ def test_unreadable_segment_is_reported_and_prevents_no_start(
     path.unlink()
     path.symlink_to(path.name)
     with closing(Recorder(tmp_path / "elsewhere", SystemClock())) as again:
-        assert path.name in looked(IntegrityChecker(""), again).problems()[0]
+        assert path.name in looked(IntegrityChecker(Term("restore", "")), again).problems()[0]
         assert sum(1 for _ in LogFeed(again.folder).records()) > 0
 
 
 def test_segment_missing_at_the_start_is_reported(recorder: Recorder, tmp_path: Path) -> None:
     shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
-    assert looked(IntegrityChecker(""), recorder).problems() == ()
+    assert looked(IntegrityChecker(Term("restore", "")), recorder).problems() == ()
     (tmp_path / "elsewhere" / "log" / recorder.segments()[1].path.name).unlink()
     with closing(Recorder(tmp_path / "elsewhere", SystemClock())) as again:
-        (reported,) = looked(IntegrityChecker(""), again).problems()
+        (reported,) = looked(IntegrityChecker(Term("restore", "")), again).problems()
         assert reported.startswith("Files of the log are gone, by their numbers 2: check the disk")
 
 
 def test_damage_found_by_a_reader_is_checked_at_once(recorder: Recorder) -> None:
-    check = looked(IntegrityChecker(""), recorder)
+    check = looked(IntegrityChecker(Term("restore", "")), recorder)
     feed = LogFeed(recorder.folder, recorder.flush, check.recheck)
     assert sum(1 for _ in feed.records()) == 300
     path = flip(recorder)
@@ -97,7 +98,7 @@ def test_segment_restored_from_a_backup_is_damaged_no_more(
     monkeypatch.setattr("base_station.storage.integrity_checker._AGAIN_LOOKS", 50)
     whole = recorder.segments()[0].path.read_bytes()
     path = flip(recorder)
-    check = looked(IntegrityChecker("Restore it."), recorder)
+    check = looked(IntegrityChecker(Term("restore", "Restore it.")), recorder)
     assert "Restore it." in check.problems()[0]
     path.write_bytes(whole)
     assert looked(check, recorder, 60).problems() == ()
@@ -126,7 +127,7 @@ def test_station_with_missing_records_restarts_when_idle() -> None:
 def test_records_cut_out_of_a_file_are_missing_though_the_rest_is_readable(
     recorder: Recorder,
 ) -> None:
-    check, path = IntegrityChecker(""), recorder.segments()[0].path
+    check, path = IntegrityChecker(Term("restore", "")), recorder.segments()[0].path
     check.note_damaged(path, "a chunk is lost", is_cut=True)
     assert looked(check, recorder).damaged == (path,)
     check.note_mended(path)

@@ -7,6 +7,7 @@ from pathlib import Path
 from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.missing_segments import KnownSegment, LogGap, log_gaps
 from shared.clock import NS_PER_S
+from shared.coded_text import Term
 from shared.mcap_log import SegmentInfo, SegmentState, segment_path
 from tests.rig.small_log import T0_NS
 
@@ -83,7 +84,7 @@ def test_loss_of_a_kill_in_the_newest_segment_is_no_damage() -> None:
 
 
 def test_check_reports_damage_until_it_is_repaired() -> None:
-    check = IntegrityChecker("It is mended.")
+    check = IntegrityChecker(Term("restore", "It is mended."))
     lacks = log_gaps([segment(1, 40), segment(2, 50), WHOLE[3]], KNOWN)
     check.note_lacks(FOLDER, lacks)
     (reported,) = check.problems()
@@ -101,14 +102,14 @@ def test_check_reports_damage_until_it_is_repaired() -> None:
 
 
 def test_only_some_of_many_are_named() -> None:
-    check = IntegrityChecker("")
+    check = IntegrityChecker(Term("restore", ""))
     check.note_lacks(FOLDER, log_gaps([], [known(number) for number in range(1, 30)]))
     (reported,) = check.problems()
     assert "; and 24 more" in reported
 
 
 def test_file_that_is_no_segment_is_named() -> None:
-    check = IntegrityChecker("")
+    check = IntegrityChecker(Term("restore", ""))
     check.note_foreign({FOLDER / "000009-20231114T221320Z.mcap": "it is of another time"})
     (reported,) = check.problems()
     assert "000009-20231114T221320Z.mcap" in reported

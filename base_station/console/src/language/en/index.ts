@@ -20,6 +20,7 @@ import { past } from "./past";
 import { board, radio, headcount, card, fact, list, confirmation } from "./people";
 import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
 import { plan_tools, plan_view, plan_form, drawing, pin, direction, section, stack } from "./plan_tools";
+import { problem } from "./problems";
 import { radio_audio } from "./radio_audio";
 import { replay, transport, timeline, crossing } from "./replay";
 import { route } from "./rescue";
@@ -99,6 +100,7 @@ export const en = {
   plan_view,
   posture,
   radio,
+  problem,
   radio_audio,
   recording,
   replay,

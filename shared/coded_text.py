@@ -1,0 +1,77 @@
+"""Texts for a person with the code and the parameters that they are made of.
+
+A console composes the text in its own language from the code; logs, programs and consoles that do
+not know the code read the English text.  The template stands where the text is made: one code has
+one template, and its placeholders are the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import LiteralString, NamedTuple
+
+import msgspec
+
+
+class TextCode(msgspec.Struct, frozen=True):
+    """Code of a text, and its parameters, with their units in their names (``away_s``)."""
+
+    code: str = ""  # empty: the text has none
+    texts: dict[str, str] = msgspec.field(default_factory=dict)
+    numbers: dict[str, float] = msgspec.field(default_factory=dict)
+
+
+NO_CODE = TextCode()
+
+
+class Term(NamedTuple):
+    """A parameter that is one of a few words: consoles have the code, English texts the words."""
+
+    code: str
+    words: str
+
+
+class Measure(NamedTuple):
+    """A number that the English text has in words of its own."""
+
+    value: float
+    words: str
+
+
+class CodedText(str):
+    """An English text that has its code with it.  ``str()`` gives the text alone, which structs
+    and messages take.
+    """
+
+    __slots__ = ("code",)
+    code: TextCode
+
+
+def coded(
+    code: LiteralString, template: LiteralString, /, **parameters: str | float | Term | Measure
+) -> CodedText:
+    """The text of ``template``, as of ``str.format``, with its code."""
+    shown, texts, numbers = dict(parameters), {}, {}
+    for name, one in parameters.items():
+        if isinstance(one, Term):
+            shown[name], texts[name] = one.words, one.code
+        elif isinstance(one, Measure):
+            shown[name], numbers[name] = one.words, float(one.value)
+        elif isinstance(one, str):
+            texts[name] = str(one)
+        else:
+            numbers[name] = float(one)
+    text = CodedText(template.format(**shown))
+    text.code = TextCode(code, texts, numbers)
+    return text
+
+
+def code_of_text(text: str) -> TextCode:
+    """The code of a text; ``NO_CODE`` where it has none."""
+    return text.code if isinstance(text, CodedText) else NO_CODE
+
+
+def join_texts(texts: Iterable[str]) -> str:
+    """Those that are not empty, as one text; of several the codes are left out."""
+    present = [text for text in texts if text]
+    return present[0] if len(present) == 1 else "; ".join(present)

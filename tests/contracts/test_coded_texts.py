@@ -1,0 +1,89 @@
+"""Every text that the station composes with ``coded`` has its message in all catalogues of the
+console, with the same parameters.  The codes are read from the source.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from string import Formatter
+from typing import NamedTuple
+
+import pytest
+
+from tests.conftest import PROJECT_ROOT
+
+LANGUAGES = ("en", "de", "fr")
+_CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
+_MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
+_BRACE = re.compile(r"\{(\w*)|\}")
+
+
+class Composed(NamedTuple):
+    """One call of ``coded``."""
+
+    where: str
+    code: str
+    placeholders: frozenset[str]  # of the English template
+    parameters: frozenset[str]
+
+
+def calls_of_coded() -> Iterator[Composed]:
+    for package in ("base_station", "shared"):
+        for path in sorted((PROJECT_ROOT / package).rglob("*.py")):
+            if "coded(" in (source := path.read_text()):
+                yield from _calls(path, ast.parse(source))
+
+
+def _calls(path: Path, tree: ast.AST) -> Iterator[Composed]:
+    for node in ast.walk(tree):
+        if (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id == "coded"
+        ):
+            code, template = (ast.literal_eval(one) for one in node.args)
+            placeholders = {name for _, name, _, _ in Formatter().parse(template) if name}
+            given = {keyword.arg for keyword in node.keywords if keyword.arg}
+            where = f"{path.relative_to(PROJECT_ROOT)}:{node.lineno}"
+            yield Composed(where, code, frozenset(placeholders), frozenset(given))
+
+
+COMPOSED = tuple(calls_of_coded())
+
+
+def messages_of(language: str) -> dict[str, str]:
+    return dict(_MESSAGE.findall((_CATALOGUES / language / "problems.ts").read_text()))
+
+
+def placeholders_of(message: str) -> set[str]:
+    """Names of an ICU message.  Braces open a placeholder and, within it, a choice, by turns."""
+    names, depth = set(), 0
+    for brace in _BRACE.finditer(message):
+        depth += -1 if brace[0] == "}" else 1
+        if brace[0] != "}" and depth % 2:
+            names.add(brace[1])
+    return names
+
+
+def test_calls_are_found() -> None:
+    assert len(COMPOSED) > 60
+
+
+def test_one_code_has_one_template() -> None:
+    codes = [one.code for one in COMPOSED]
+    assert sorted(codes) == sorted(set(codes))
+
+
+def test_template_uses_only_given_parameters() -> None:
+    assert [one for one in COMPOSED if not one.placeholders <= one.parameters] == []
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_code_has_a_message_with_its_parameters(language: str) -> None:
+    messages = messages_of(language)
+    assert set(messages) == {one.code for one in COMPOSED}
+    for one in COMPOSED:
+        assert placeholders_of(messages[one.code]) == one.parameters, (language, one)

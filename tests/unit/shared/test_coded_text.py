@@ -1,0 +1,40 @@
+"""Texts with their codes."""
+
+from __future__ import annotations
+
+from shared.coded_text import (
+    NO_CODE,
+    Measure,
+    Term,
+    TextCode,
+    code_of_text,
+    coded,
+    join_texts,
+)
+
+
+def test_coded_text_reads_as_its_template_and_keeps_code_and_parameters() -> None:
+    text = coded("room", "only {free_mb:.0f} MB in {folder}", free_mb=12.4, folder="/log")
+    assert text == "only 12 MB in /log"
+    assert code_of_text(text) == TextCode("room", {"folder": "/log"}, {"free_mb": 12.4})
+
+
+def test_term_and_measure_have_words_in_english_and_codes_beside_it() -> None:
+    text = coded(
+        "end", "{holder} ends {days}", holder=Term("unit", "unit 3"), days=Measure(1, "soon")
+    )
+    assert text == "unit 3 ends soon"
+    assert code_of_text(text) == TextCode("end", {"holder": "unit"}, {"days": 1.0})
+
+
+def test_plain_text_has_no_code() -> None:
+    assert code_of_text("plain") is NO_CODE
+    assert type(str(coded("plain", "plain"))) is str
+
+
+def test_joined_texts_keep_the_code_of_a_single_one() -> None:
+    one, other = coded("one", "one"), coded("other", "other")
+    assert code_of_text(join_texts(("", one))).code == "one"
+    assert join_texts((one, "", other)) == "one; other"
+    assert code_of_text(join_texts((one, other))) is NO_CODE
+    assert join_texts(("", "")) == ""
