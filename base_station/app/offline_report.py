@@ -50,6 +50,7 @@ def open_report_sources(
             roster=Roster(store, clock),
             kept=kept,
             log=offline_log.log,
+            imports=offline_log.imports,
             defects=offline_log.defects,
             recorded_until_ns=offline_log.folder.recorded_until_ns,
         ),

@@ -176,6 +176,7 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
                 roster=Roster(store, clock),
                 kept=SmoothedTracks(store),
                 log=log,
+                imports=ImportFolder(DataFolder(Path(job.log).parent).imports),
                 defects=flaws,
                 recorded_until_ns=DataFolder(Path(job.log).parent).recorded_until_ns,
             )

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import io
 import math
 import warnings
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
-from PIL import ExifTags, Image, ImageOps
+from PIL import ExifTags, Image
 
 from base_station.importers.interface import Importer, ImportOptions
 from base_station.storage.imports import ImportedContent, ImportedPoint, ImportedTrack
+from base_station.storage.small_picture import small_jpeg
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 
@@ -36,7 +36,7 @@ def read_photo(path: Path, options: ImportOptions) -> ImportedContent:
             details = dict(exif.get_ifd(ExifTags.IFD.Exif))
             lat_deg, lon_deg = _place(gps)
             t_ns, warning = _time_ns(details, gps, options.utc_offset_h)
-            picture = _small(image)
+            picture = small_jpeg(image, PICTURE_SIDE_PX)
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
         raise UserError("it has too many pixels; save it smaller, with its Exif data") from error
     except (OSError, ValueError, SyntaxError) as error:
@@ -44,17 +44,6 @@ def read_photo(path: Path, options: ImportOptions) -> ImportedContent:
     point = ImportedPoint(t_ns, lat_deg, lon_deg, _height_m(gps))
     track = ImportedTrack(options.file_name, (point,))
     return ImportedContent(PHOTO.name, (track,), (warning,) if warning else (), picture)
-
-
-def _small(image: Image.Image) -> bytes:
-    image.draft("RGB", (2 * PICTURE_SIDE_PX, 2 * PICTURE_SIDE_PX))
-    upright = ImageOps.exif_transpose(image).convert("RGB")
-    upright.thumbnail((PICTURE_SIDE_PX, PICTURE_SIDE_PX), Image.Resampling.LANCZOS)
-    bare = Image.new("RGB", upright.size)  # without the place and the camera
-    bare.paste(upright)
-    written = io.BytesIO()
-    bare.save(written, "JPEG", quality=80)
-    return written.getvalue()
 
 
 def _place(gps: _Tags) -> tuple[float, float]:

@@ -122,6 +122,23 @@ class ImportEntry(msgspec.Struct, frozen=True):
     sha256: str
 
 
+class PhotoEntry(msgspec.Struct, frozen=True):
+    """A photograph that was brought into the incident."""
+
+    file_name: str
+    taken_ns: int  # station time
+    place: tuple[float, float] | None  # latitude and longitude in degrees (WGS-84)
+    t_ns: int  # when it was brought in
+    by: str
+    jpeg: bytes  # scaled down; empty: it cannot be shown
+    fault: str  # why, as a sentence
+
+
+class Photographs(msgspec.Struct, frozen=True):
+    entries: tuple[PhotoEntry, ...]  # the oldest ones
+    left_out: int
+
+
 class ReportContents(msgspec.Struct, frozen=True):
     incident_id: str
     name: str
@@ -140,6 +157,7 @@ class ReportContents(msgspec.Struct, frozen=True):
     has_anchor: bool
     assessment: IncidentReport | None  # None: not worked out
     imports: tuple[ImportEntry, ...]
+    photographs: Photographs
     defects: tuple[str, ...]
     thresholds: tuple[tuple[str, float, float], ...]  # name, in force at the end, default
     par_interval_s: float  # at the end

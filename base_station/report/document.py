@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 
 from base_station.replay.assessment.report import UnitReport
 from base_station.report import texts
-from base_station.report.contents import OrderEntry, OrderReceipt, PersonEntry, ReportContents
+from base_station.report.contents import (
+    OrderEntry,
+    OrderReceipt,
+    PersonEntry,
+    PhotoEntry,
+    Photographs,
+    ReportContents,
+)
 from base_station.report.floor_pictures import floor_picture, floors_of
-from base_station.report.markup import Markup, UrgentRow, element, joined, table
+from base_station.report.markup import JPEG_ADDRESS, Markup, UrgentRow, element, joined, table
 from base_station.report.orders import ASKED_PAR
 from base_station.report.style import STYLE
 from base_station.report.trace_pictures import trace_picture
 
 # The page does nothing but show itself, whatever comes to be in it.
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 _MOST_URGENT = 12
 
@@ -44,6 +52,8 @@ def _sections(report: ReportContents) -> Iterable[Markup]:
     yield _section(texts.TRACES, _traces(report))
     if report.imports:
         yield _section(texts.IMPORTS, _imports(report))
+    if report.photographs.entries:
+        yield _section(texts.PHOTOGRAPHS, _photographs(report.photographs))
     yield _section(texts.POSITIONS, _positions(report))
     yield _section(texts.RECORD, _record(report))
     yield _section(texts.SETTINGS, _settings(report))
@@ -268,6 +278,27 @@ def _imports(report: ReportContents) -> Markup:
         for one in report.imports
     )
     return joined(element("p", texts.IMPORTS_KEY, class_="note"), table(texts.HEAD_IMPORTS, rows))
+
+
+def _photographs(found: Photographs) -> Markup:
+    left_out = found.left_out
+    return joined(
+        element("p", texts.PHOTOGRAPHS_KEY, class_="note"),
+        element("p", texts.photographs_left_out(left_out), class_="warning") if left_out else "",
+        element("div", map(_photograph, found.entries), class_="photographs"),
+    )
+
+
+def _photograph(one: PhotoEntry) -> Markup:
+    if one.jpeg:
+        address = f"{JPEG_ADDRESS}{b64encode(one.jpeg).decode()}"
+        picture = element("img", src=address, alt=one.file_name)
+    else:
+        picture = element("p", one.fault, class_="warning")
+    caption = element(
+        "figcaption", one.file_name, element("div", texts.photograph_caption(one), class_="note")
+    )
+    return element("figure", picture, caption)
 
 
 def _positions(report: ReportContents) -> Markup:

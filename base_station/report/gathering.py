@@ -26,6 +26,7 @@ from base_station.report.contents import (
     Interval,
     OrderEntry,
     PersonEntry,
+    Photographs,
     ReportContents,
     TimelineEntry,
     UnitEntry,
@@ -34,6 +35,7 @@ from base_station.report.contents import (
 from base_station.report.incident_entries import entries_of_incident
 from base_station.report.log_facts import LogFacts, read_facts, series_within, wanted_keys
 from base_station.report.orders import details_of, kind_name, orders_of
+from base_station.report.photographs import photographs_of
 from base_station.report.trail import measure
 from base_station.site.plan import Plan, salvage_plan
 from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry, IncidentRow
@@ -41,6 +43,7 @@ from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.window import Window
+from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
 from shared.clock import NS_PER_S
 from shared.messages.station import (
@@ -65,6 +68,7 @@ class ReportSources:
     roster: Roster
     kept: SmoothedTracks
     log: LogFeed
+    imports: ImportFolder  # files that were brought in
     defects: LogDefects
     recorded_until_ns: Callable[[], int]  # where an open incident ends
 
@@ -124,6 +128,7 @@ class _Gathering:
             has_anchor=anchor is not None,
             assessment=report and with_people(report, worn),
             imports=tuple(self._imports()),
+            photographs=self._photographs(),
             defects=tuple(sources.defects()),
             thresholds=tuple(self._thresholds()),
             par_interval_s=times[0],
@@ -143,6 +148,15 @@ class _Gathering:
                 by=row.by,
                 sha256=row.sha256,
             )
+
+    def _photographs(self) -> Photographs:
+        rows = self._sources.records.imports_of(self._incident.incident_id)
+        found = photographs_of(rows, self._sources.imports)
+        entries = tuple(
+            msgspec.structs.replace(one, file_name=self._shown(one.file_name))
+            for one in found.entries
+        )
+        return msgspec.structs.replace(found, entries=entries)
 
     def _dispatch(self) -> str:
         number = self._incident.dispatch_number

@@ -7,7 +7,8 @@ from html import escape
 
 from shared.xml_text import in_xml
 
-_EMPTY = frozenset({"meta", "br"})
+_EMPTY = frozenset({"meta", "br", "img"})
+JPEG_ADDRESS = "data:image/jpeg;base64,"  # before a picture that is in the page itself (RFC 2397)
 _SHORT = 12  # characters
 
 

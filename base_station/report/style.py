@@ -39,6 +39,10 @@ figcaption { font-size: 9pt; font-weight: bold; overflow-wrap: anywhere; }
 article { break-inside: avoid; }
 .small-pictures figure { display: inline-block; vertical-align: top; max-width: 88mm;
   margin-right: 3mm; }
+.photographs figure { display: inline-block; vertical-align: top; width: 88mm;
+  margin-right: 3mm; }
+.photographs img { max-width: 100%; max-height: 120mm; border: 0.5px solid #bbb; }
+.photographs .note { font-weight: normal; }
 @media print { main { max-width: none; padding: 0; } }
 """
 

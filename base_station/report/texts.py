@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from base_station.report.contents import OrderReceipt
+from base_station.report.contents import OrderReceipt, PhotoEntry
 
 Details = Mapping[str, Any]
 NameOf = Callable[[str], str]  # of the wearer of a unit
@@ -26,7 +26,7 @@ OPENED, CLOSED, STILL_OPEN, LASTED = "Opened", "Closed", "still open", "Lasted"
 ALARMS, RADIO_GAPS = "Alarms", "Radio gaps"
 TIMELINE, PAR, ORDERS = "Timeline", "Roll calls (PAR)", "Orders"
 PLAN, PEOPLE, TRACES = "Plan by floor", "People", "Alarms explained"
-IMPORTS = "Brought in"
+IMPORTS, PHOTOGRAPHS = "Brought in", "Photographs"
 POSITIONS, RECORD, SETTINGS = "Quality of positions", "Gaps in the record", "Versions and settings"
 
 NO_ORDERS = "No order was given."
@@ -45,6 +45,16 @@ IMPORTS_KEY = (
     "Files from elsewhere: this station has not measured what is in them. The hash is of the file "
     "as it came."
 )
+PHOTOGRAPHS_KEY = (
+    "Scaled down. Time and place are those of the camera, with the seconds that were added to its "
+    "clock; the files as they came are with the incident."
+)
+NO_FILE = "The file is not here, so there is no picture: it was brought in at another station."
+OTHER_FILE = (
+    "The file is damaged, so there is no picture: its hash is not that of the file that came. "
+    "Bring it in again."
+)
+TOO_MANY_PIXELS = "It has too many pixels to be shown here."
 NO_TIMELINE = "Nothing was recorded."
 TRAILS_KEY = (
     "Solid line: trail with radio contact. Dashed line: radio gap, known afterwards from the "
@@ -208,6 +218,26 @@ def alarm_peak(rule: str, peak: float) -> str:
 
 def more_in_timeline(count: int) -> str:
     return f"{count} more in the timeline"
+
+
+def photographs_left_out(count: int) -> str:
+    return f"{counted(count, 'photograph more is', 'photographs more are')} not shown here."
+
+
+def unreadable_picture(reason: str) -> str:
+    return f"The file is damaged, so there is no picture ({reason}). Bring it in again."
+
+
+def place_in_words(lat_deg: float, lon_deg: float) -> str:
+    """To 0.1 m."""
+    north, east = "N" if lat_deg >= 0.0 else "S", "E" if lon_deg >= 0.0 else "W"
+    return f"{abs(lat_deg):.6f}° {north}, {abs(lon_deg):.6f}° {east}"
+
+
+def photograph_caption(entry: PhotoEntry) -> str:
+    place = UNKNOWN if entry.place is None else place_in_words(*entry.place)
+    brought_in = when_and_by(entry.t_ns, entry.by)
+    return f"Taken {date_and_time(entry.taken_ns)} at {place}. Brought in {brought_in}."
 
 
 def traces_left_out(count: int) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from html.parser import HTMLParser
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -29,6 +31,7 @@ from shared.mcap_log import segment_paths
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import SetAnchor, SetPlan
 from tests.rig.full_disk import files_of_at_most
+from tests.rig.imported_files import exif_time, write_photo
 from tests.rig.reported_incident import HOSTILE, incident_records, write_log
 from tests.rig.station_script import Record
 
@@ -159,6 +162,31 @@ def test_a_hostile_name_is_text_and_the_page_loads_nothing(written: bytes) -> No
 
 def test_the_same_log_gives_the_same_bytes(given: Path, written: bytes, tmp_path: Path) -> None:
     assert _page(given, tmp_path / "again.html") == written
+
+
+def test_photographs_are_pictures_in_html_and_pdf(given: Path, tmp_path: Path) -> None:
+    data, taken_s = tmp_path / "station", 1_700_000_100
+    shutil.copytree(given, data)
+    station_app.rebuild(data, lambda _: None)
+    for seconds in (0, 30):
+        photo = write_photo(
+            tmp_path / f"door-{seconds}.jpg", (52.0, 4.0), exif_time(taken_s + seconds), "+00:00"
+        )
+        brought = CliRunner().invoke(app, ["import", "i1", str(photo), "--data", str(data)])
+        assert brought.exit_code == 0, brought.output
+    first, *_ = sorted((data / "imports" / "i1").glob("*.original"))
+    first.write_bytes(first.read_bytes()[:-10])
+    pdf = tmp_path / "report.pdf"
+    options = () if find_spec("weasyprint") is None else ("--pdf", str(pdf))
+    written = _page(data, tmp_path / "report.html", *options)
+    text = section(written, "Photographs")
+    assert "Brought in" in text
+    assert "52.000000° N, 4.000000° E" in text
+    assert text.count("The file is damaged, so there is no picture") == 1
+    assert re.findall(r'src="([^,"]+),', written.decode()) == ["data:image/jpeg;base64"]
+    assert _page(data, tmp_path / "again.html") == written
+    if options:
+        assert b"/DCTDecode" in pdf.read_bytes(), "the JPEG itself is in it"
 
 
 def test_an_open_incident_ends_with_the_record(tmp_path: Path) -> None:
