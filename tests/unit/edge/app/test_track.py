@@ -90,7 +90,7 @@ def test_track_writes_a_line_a_sample(trial, tmp_path):
     assert np.all(np.diff(table[:, 0]) > 0.0)
 
 
-def test_a_place_that_cannot_be_written_is_stated(trial, tmp_path):
+def test_output_that_cannot_be_written_is_reported(trial, tmp_path):
     app = typer.Typer()
     app.command()(track)
     result = CliRunner().invoke(app, [str(trial), "--out", str(tmp_path / "no" / "where.csv")])

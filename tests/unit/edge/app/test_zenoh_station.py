@@ -91,7 +91,7 @@ def test_invented_announcements_take_no_known_station_away(
     assert {tried[0] for tried in network.tried} == {KNOWN}
 
 
-def test_a_unit_that_does_not_discover_asks_nobody(
+def test_unit_without_discovery_sends_no_query(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(zenoh_station, "_finder", lambda _: pytest.fail("it searches"))

@@ -80,8 +80,8 @@ def test_a_damaged_file_is_one_sentence(text, reported, tmp_path):
 
 
 @pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
-def test_a_file_with_what_is_no_number_is_damaged(calibration, number, tmp_path):
-    """With it every sample would be none, and the unit nowhere, with a sensor that is well."""
+def test_file_with_a_value_that_is_no_number_is_damaged(calibration, number, tmp_path):
+    """With it every sample would be lost, and the unit without a place, with a healthy sensor."""
     write_calibration(calibration, tmp_path / "c.toml")
     text = (tmp_path / "c.toml").read_text()
     for first in ("bias_radps = [", "residual_radps = "):
@@ -111,8 +111,8 @@ def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
         ("gyro_bias_per_degc_radps = [0, -1.5, 0]", "warmth.gyro_bias_per_degc_radps is off by"),
     ],
 )
-def test_numbers_that_no_sensor_is_off_by_are_damage(line, reported, tmp_path):
-    """A digit that flipped would bend every path of a unit whose sensors are well."""
+def test_impossible_sensor_errors_are_damage(line, reported, tmp_path):
+    """A flipped digit would bend every path of a unit whose sensors are healthy."""
     part = reported.partition(".")[0]
     file = tmp_path / "c.toml"
     write_calibration(whole_calibration(), file)

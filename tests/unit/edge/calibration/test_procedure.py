@@ -24,7 +24,7 @@ def refusal(step, batches) -> str:
     return str(caught.value)
 
 
-def test_a_unit_that_moved_is_refused_for_the_still_step():
+def test_unit_that_moved_is_refused_for_the_still_step():
     unit = HandledUnit(0)
     stated = refusal(StillStep(), [unit.rest(6.0), unit.turn(X, 1.0), unit.rest(6.0)])
     assert "moved during the still step (last at 7.0 s)" in stated
@@ -79,7 +79,7 @@ def test_half_a_sphere_is_refused():
     assert "also upside down" in refusal(TurningStep(), [batch])
 
 
-def test_a_magnet_is_not_taken_for_the_earth():
+def test_magnet_is_not_taken_for_the_earths_field():
     unit = HandledUnit(0)
     batches = [
         replace(batch, mag_ut=None if batch.mag_ut is None else 4.0 * batch.mag_ut)
@@ -173,8 +173,8 @@ def test_what_either_sensor_feels_is_no_rest(accel_mps2, gyro_radps, rests):
     assert bool(finder.rests) is rests
 
 
-def test_what_nobody_saw_ends_a_rest():
-    """The sensor said nothing for two seconds: the unit may have been taken up and laid down."""
+def test_missing_samples_end_a_rest():
+    """The sensor was silent for two seconds: the unit may have been taken up and laid down."""
     finder = RestDetector()
     silent = felt(2.0, 5.0, 0.0, 0.0)
     silent.accel_mps2[:] = np.nan

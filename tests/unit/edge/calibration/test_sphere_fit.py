@@ -91,7 +91,7 @@ def test_the_residual_is_the_error_of_the_length() -> None:
     assert fit.residual == pytest.approx(0.01 * np.sqrt(8.0 / 14.0), rel=0.01)
 
 
-def test_few_readings_that_fit_well_are_not_believed_to_be_better_than_the_noise() -> None:
+def test_few_readings_that_fit_well_are_no_better_than_the_noise() -> None:
     shape, gain = GAINS["diagonal"]
     vectors = readings(gain, 1.0, directions(6))  # as many as there are unknowns: they fit exactly
     once, twice = fitted(shape, vectors, 0.001), fitted(shape, vectors, 0.002)

@@ -91,7 +91,7 @@ def test_the_longest_rest_is_taken_whichever_it_is() -> None:
 
 
 @pytest.mark.parametrize(("rate_radps", "turns"), [(0.09, False), (-0.11, True)])
-def test_who_lies_on_something_that_turns_is_reported(rate_radps: float, turns: bool) -> None:
+def test_rotating_table_is_reported(rate_radps: float, turns: bool) -> None:
     bench = Bench(StillStep())
     bench.lies(Z, 20.0, rate_radps)
     assert ("turned evenly" in (bench.step.missing() or "")) is turns

@@ -42,7 +42,7 @@ def settled() -> ClockOffsetFilter:
     return offset
 
 
-def test_before_the_first_exchange_nothing_is_known() -> None:
+def test_offset_is_unknown_before_the_first_exchange() -> None:
     assert ClockOffsetFilter().at(0) is None
 
 
@@ -66,7 +66,7 @@ def test_one_that_was_sent_before_it_was_received_is_not_used() -> None:
     assert not offset.note(Exchange(asked, received + 1_000_000, sent, answered))
 
 
-def test_one_that_was_held_up_on_the_way_moves_it_little(settled: ClockOffsetFilter) -> None:
+def test_delayed_exchange_changes_the_offset_little(settled: ClockOffsetFilter) -> None:
     std_s = estimate(settled, 10.0).std_s
     assert settled.note(exchange(10.0, there_s=8.0))
     assert abs(off_s(settled, 20.0)) < 0.01
@@ -79,7 +79,7 @@ def test_an_answer_that_comes_after_a_later_one_changes_nothing(settled: ClockOf
     assert estimate(settled, 20.0) == before
 
 
-def test_what_is_impossible_is_believed_the_third_time_in_a_row(settled: ClockOffsetFilter) -> None:
+def test_impossible_offset_is_accepted_the_third_time_in_a_row(settled: ClockOffsetFilter) -> None:
     wrong_s = OFFSET_S + HOUR_S
     for at_s in (10.0, 11.0):
         assert not settled.note(exchange(at_s, offset_s=wrong_s))
@@ -119,7 +119,7 @@ def test_the_quickest_of_them_says_how_far_the_two_ways_can_differ(
 AT_ONCE = (0.0, 0.0)  # there and back
 
 
-def test_how_long_the_station_thought_about_it_is_no_part_of_the_way() -> None:
+def test_processing_time_of_the_station_is_no_part_of_the_delay() -> None:
     asked, received, sent, answered = exchange(0.0, 0.1, 0.1)
     thought_ns = 3 * NS_PER_S
     slow = Exchange(asked, received, sent + thought_ns, answered + thought_ns)

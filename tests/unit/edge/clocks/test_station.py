@@ -39,7 +39,7 @@ def test_it_asks_once_a_second_until_it_has_eight_answers_and_then_now_and_then(
     assert asked_s == pytest.approx([0, 1, 2, 3, 4, 5, 6, 7, 8, 23, 38])
 
 
-def test_what_is_no_answer_is_no_time_and_it_asks_on() -> None:
+def test_invalid_answer_is_no_time_and_the_requests_continue() -> None:
     machine = ManualClock()
     station, clock = Station(machine), StationClock(machine)
     station.answer = b"\xff\xff"

@@ -59,7 +59,7 @@ def player(output: Output) -> Iterator[NoticePlayer]:
         yield player
 
 
-def test_what_is_shown_is_played_again_and_again_and_reported_once(player, output) -> None:
+def test_shown_notice_is_repeated_and_reported_once(player, output) -> None:
     player.show((EVACUATE,))
     until(lambda: output.begun.count(EVACUATE) > 3)
     assert player.take_played() == (EVACUATE,)

@@ -53,7 +53,7 @@ def test_what_a_unit_does_not_have_is_a_warning_with_what_it_costs() -> None:
         assert finding.remedy
 
 
-def test_what_was_set_and_is_silent_has_failed() -> None:
+def test_silent_configured_sensor_has_failed() -> None:
     found = survey(FULL)
     for subject in ("temperature front", "temperature 2", "battery", "satellites"):
         assert found[subject].level is Severity.FAILED
@@ -66,7 +66,7 @@ def test_one_silent_sensor_of_two_is_named() -> None:
     assert levels == {"temperature 2": Severity.FAILED, "temperature front": Severity.OK}
 
 
-def test_nobody_is_asked_for_a_press_at_the_start() -> None:
+def test_button_press_is_not_required_at_the_start() -> None:
     found = list(AuxiliarySurvey(BARE, BUTTONS).findings(asks_press=False))
     assert "button" not in {finding.subject for finding in found}
 
@@ -102,13 +102,13 @@ def test_a_unit_that_has_everything_is_ok() -> None:
         (fix(3.0, fix_type=0), "satellites", Severity.WARNING),
     ],
 )
-def test_what_makes_no_sense_or_may_not_last_is_found(
+def test_impossible_or_temporary_values_are_found(
     sample: OtherSample, subject: str, level: Severity
 ) -> None:
     assert survey(FULL, sample)[subject].level is level
 
 
-def test_a_button_that_nobody_pressed_is_not_known_to_work() -> None:
+def test_button_that_was_not_pressed_is_not_known_to_work() -> None:
     assert survey(BARE, gives=BUTTONS)["button"].level is Severity.WARNING
 
 

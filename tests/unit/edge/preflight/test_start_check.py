@@ -146,6 +146,6 @@ def test_a_check_that_fails_is_stated_and_stops_no_unit(monkeypatch: pytest.Monk
     assert check.step(5 * END_NS) is None
 
 
-def test_before_it_is_started_it_says_nothing() -> None:
+def test_check_reports_nothing_before_its_start() -> None:
     check = StartCheck(CONFIG, {"": SENSOR}, GIVES, all_well)
     assert check.step(5 * END_NS) is None

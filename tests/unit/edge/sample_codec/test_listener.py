@@ -117,7 +117,7 @@ def test_messages_are_taken_in_the_order_in_which_they_came(unit: Unit) -> None:
     assert not unit.listener.has_restarted(7), "of nothing nobody knows"
 
 
-def test_nothing_is_received_of_others(unit: Unit) -> None:
+def test_messages_of_other_units_are_not_received(unit: Unit) -> None:
     other = unit.router.attach_unit()
     other.publish(IMU.key("FF-02"), encode(raw(1)), Qos.LIVE)
     assert unit.taken() == []
@@ -145,7 +145,7 @@ def test_for_a_unit_that_tracks_itself_nothing_is_tracked(unit: Unit) -> None:
     assert not source.follow(unit.listener, OneLook())
 
 
-def test_what_nobody_understands_costs_nothing_else(unit: Unit) -> None:
+def test_unreadable_message_costs_nothing_else(unit: Unit) -> None:
     unit.publishes(b"\xff\xff")
     unit.publishes_description(b"\xff\xff")
     unit.describes()
@@ -208,7 +208,7 @@ def test_a_bus_that_cannot_be_opened_is_tried_again(unit: Unit) -> None:
     listener.close()
 
 
-def test_who_has_closed_receives_nothing_more(unit: Unit) -> None:
+def test_closed_listener_receives_nothing_more(unit: Unit) -> None:
     unit.listener.close()
     unit.says(raw(1))
     assert unit.taken() == []
@@ -259,7 +259,7 @@ def test_the_same_sensor_gives_its_samples(unit: Unit) -> None:
         ((1, 9), (0, -5000), []),
     ],
 )
-def test_what_the_radio_lost_is_asked_for_where_time_has_a_hole(
+def test_messages_lost_by_the_radio_are_requested_where_time_has_a_gap(
     unit: Unit, seqs: tuple[int, int], ms: tuple[int, int], asked: list[tuple[int, int]]
 ) -> None:
     unit.describes()
@@ -298,7 +298,7 @@ def test_what_was_lost_comes_in_its_place_and_is_left_out_when_it_comes_late(uni
     assert unit.asked == [(2, 3)]
 
 
-def test_a_journal_that_talks_nonsense_leaves_the_hole(unit: Unit) -> None:
+def test_invalid_answer_of_a_journal_leaves_the_gap(unit: Unit) -> None:
     unit.describes()
     spoilt = JournalChunk(7, 2, 3, (JournalEntry(2, IMU.suffix, b"\xff\xff"),))
     unit.journal = lambda _first, _last: [spoilt]
