@@ -35,7 +35,7 @@ describe("a text of the station", () => {
     };
     await show("de");
     expect(codedText("problem", ending, "")).toBe(
-      "Das Zertifikat der Einheit unit-3 läuft in 1 Tag ab: muster pki renew unit-3",
+      "Das Zertifikat des Geräts unit-3 läuft in 1 Tag ab: muster pki renew unit-3",
     );
   });
 });

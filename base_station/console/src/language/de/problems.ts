@@ -7,11 +7,11 @@ export const problem: Part<"problem"> = {
   "archive-away":
     "Abgeschlossene Einsätze werden seit {minutes} nicht archiviert, {waiting, number} warten: {reason}",
   "bus-plain":
-    "Der Bus ist unverschlüsseltes TCP: Jeder Rechner, der ihn erreicht, kann sich als jede Einheit ausgeben",
+    "Der Bus ist unverschlüsseltes TCP: Jeder Rechner, der ihn erreicht, kann sich als jedes Gerät ausgeben",
   "certificate-expired":
-    "Das Zertifikat {holder, select, console {der Konsole} this_station {dieser Station} first_station {der ersten Station} station {der Station {name}} operator {des Bedieners {name}} tracker {des Tracking-Agenten von {name}} other {der Einheit {name}}} ist am {ends_utc_s} abgelaufen: {command}",
+    "Das Zertifikat {holder, select, console {der Konsole} this_station {dieser Station} first_station {der ersten Station} station {der Station {name}} operator {des Bedieners {name}} tracker {des Tracking-Agenten von {name}} other {des Geräts {name}}} ist am {ends_utc_s} abgelaufen: {command}",
   "certificate-expires":
-    "Das Zertifikat {holder, select, console {der Konsole} this_station {dieser Station} first_station {der ersten Station} station {der Station {name}} operator {des Bedieners {name}} tracker {des Tracking-Agenten von {name}} other {der Einheit {name}}} läuft {days, plural, =0 {in weniger als einem Tag} one {in # Tag} other {in # Tagen}} ab: {command}",
+    "Das Zertifikat {holder, select, console {der Konsole} this_station {dieser Station} first_station {der ersten Station} station {der Station {name}} operator {des Bedieners {name}} tracker {des Tracking-Agenten von {name}} other {des Geräts {name}}} läuft {days, plural, =0 {in weniger als einem Tag} one {in # Tag} other {in # Tagen}} ab: {command}",
   "certificate-renewed":
     "Das Zertifikat dieser Station wurde erneuert. Die Station startet damit neu, was einige Sekunden dauert, wenn der Einsatz abgeschlossen ist, oder eine Stunde bevor das jetzige endet ({ends_utc_s})",
   "checkpoint-refused":
@@ -23,7 +23,7 @@ export const problem: Part<"problem"> = {
   "clock-behind":
     "Die Uhr dieses Rechners geht gegenüber der letzten Aufzeichnung {off_s} nach: die Uhr stellen. Bis dahin laufen die Zeiten von dort weiter",
   "connections-refused":
-    "{count, number} Verbindungen zum Bus wurden in der letzten Minute abgewiesen ({total, number} seit dem Start des Routers), davon {of_network, number} von {network}, die meisten wegen: {reason, select, silent {keine rechtzeitige Begrüßung} ended {Ende vor einer Begrüßung} not_tls {kein TLS oder kein Zertifikat der Zertifizierungsstelle dieser Station} not_enrolled {ein Zertifikat, das gesperrt ist oder nicht auf der Liste steht} banned {ein Inhaber, der vorübergehend ausgesperrt ist} too_often {mehr Verbindungen eines Inhabers als zulässig} other {mehr gleichzeitige Verbindungen als zulässig}}. Einheiten werden trotzdem verbunden; siehe docs/howto/when-attacked.md",
+    "{count, number} Verbindungen zum Bus wurden in der letzten Minute abgewiesen ({total, number} seit dem Start des Routers), davon {of_network, number} von {network}, die meisten wegen: {reason, select, silent {keine rechtzeitige Begrüßung} ended {Ende vor einer Begrüßung} not_tls {kein TLS oder kein Zertifikat der Zertifizierungsstelle dieser Station} not_enrolled {ein Zertifikat, das gesperrt ist oder nicht auf der Liste steht} banned {ein Inhaber, der vorübergehend ausgesperrt ist} too_often {mehr Verbindungen eines Inhabers als zulässig} other {mehr gleichzeitige Verbindungen als zulässig}}. Geräte werden trotzdem verbunden; siehe docs/howto/when-attacked.md",
   "console-name-not-certified":
     "Das Zertifikat der Konsole gilt nicht für {name}, sodass Browser davor warnen: mit „muster pki renew-station --host {name}“ und --host für jeden weiteren Namen und jede Adresse ein neues erstellen",
   "console-not-announced":
@@ -61,9 +61,9 @@ export const problem: Part<"problem"> = {
   "erasure-waits":
     "Die Aufzeichnung wird neu geschrieben, um {kind, select, person {eine Person} incident {einen Einsatz} other {{kind}}} zu löschen ({share_fraction}), wie von {by} gewünscht: {reason}",
   "journal-floods":
-    "Das Journal von {unit_id} bringt mehr, als eine Einheit in Stunden sendet ({most, number} Meldungen, {most_mb} oder {most_alerts, number} Alarme): Der Rest wird langsam geholt. War sie nicht lange außer Reichweite, sie ausschalten oder sperren: muster pki revoke {unit_id}",
+    "Das Journal von {unit_id} bringt mehr, als ein Gerät in Stunden sendet ({most, number} Meldungen, {most_mb} oder {most_alerts, number} Alarme): Der Rest wird langsam geholt. War es nicht lange außer Reichweite, es ausschalten oder sperren: muster pki revoke {unit_id}",
   "log-damaged":
-    "Ein Teil der Aufzeichnung ist nicht mehr lesbar ({files}): den Datenträger prüfen. {remedy, select, other_station {Was fehlt, wird von der anderen Station geholt, sobald diese erreichbar ist} other {Meldungen der Einheiten werden noch einmal aus deren Journalen geholt; für den Rest die Datei aus einer Sicherung zurückspielen}}",
+    "Ein Teil der Aufzeichnung ist nicht mehr lesbar ({files}): den Datenträger prüfen. {remedy, select, other_station {Was fehlt, wird von der anderen Station geholt, sobald diese erreichbar ist} other {Meldungen der Geräte werden noch einmal aus deren Journalen geholt; für den Rest die Datei aus einer Sicherung zurückspielen}}",
   "log-disk-hangs":
     "{folder} kann nicht beschrieben werden: Der Datenträger antwortet nicht; ihn prüfen",
   "log-files-gone":
@@ -73,7 +73,7 @@ export const problem: Part<"problem"> = {
   "log-little-room":
     "nur {free_mb} sind für die Aufzeichnung in {folder} frei: Platz auf dem Datenträger schaffen",
   "log-part-lost":
-    "Ein Teil der Aufzeichnung ist verloren: {lost}: den Datenträger prüfen. {remedy, select, other_station {Was fehlt, wird von der anderen Station geholt, sobald diese erreichbar ist} other {Meldungen der Einheiten werden noch einmal aus deren Journalen geholt; für den Rest die Datei aus einer Sicherung zurückspielen}}",
+    "Ein Teil der Aufzeichnung ist verloren: {lost}: den Datenträger prüfen. {remedy, select, other_station {Was fehlt, wird von der anderen Station geholt, sobald diese erreichbar ist} other {Meldungen der Geräte werden noch einmal aus deren Journalen geholt; für den Rest die Datei aus einer Sicherung zurückspielen}}",
   "log-records-lost":
     "die Aufzeichnung kann nicht nach {folder} geschrieben werden ({error}): {waiting_mb} warten im Arbeitsspeicher, {lost, number} Einträge sind verloren; Platz schaffen oder den Datenträger ersetzen",
   "log-records-missing":
@@ -81,9 +81,9 @@ export const problem: Part<"problem"> = {
   "log-waits":
     "die Aufzeichnung kann nicht nach {folder} geschrieben werden ({error}): {waiting_mb} warten im Arbeitsspeicher; Platz schaffen oder den Datenträger ersetzen",
   "messages-left-out":
-    "Meldungen kommen schneller, als dieser Rechner sie annehmen kann; {count, number} wurden ausgelassen und werden aus den Journalen der Einheiten geholt",
+    "Meldungen kommen schneller, als dieser Rechner sie annehmen kann; {count, number} wurden ausgelassen und werden aus den Journalen der Geräte geholt",
   "messages-not-kept":
-    "Meldungen, für die das Journal einer Einheit seit deren Start keinen Platz hatte: {counts}. Gingen sie auch auf der Verbindung verloren, fehlen sie: Platz auf dem Datenträger der Einheit schaffen oder ihn ersetzen",
+    "Meldungen, für die das Journal eines Geräts seit deren Start keinen Platz hatte: {counts}. Gingen sie auch auf der Verbindung verloren, fehlen sie: Platz auf dem Datenträger des Geräts schaffen oder ihn ersetzen",
   "messages-unreadable":
     "{count, number} Meldungen waren nicht lesbar; zuletzt {last}",
   "part-ended":
@@ -95,25 +95,25 @@ export const problem: Part<"problem"> = {
   "recorder-stopped":
     "die Aufzeichnung hat angehalten, nichts wird aufgezeichnet ({error}): neu starten",
   "restart-storm":
-    "Das Programm einer Einheit startet ungewöhnlich oft ({key}): ausgelassen",
+    "Das Programm eines Geräts startet ungewöhnlich oft ({key}): ausgelassen",
   "router-away":
-    "Der Router des Busses ist ausgefallen und wird neu gestartet; keine Einheit ist verbunden",
+    "Der Router des Busses ist ausgefallen und wird neu gestartet; kein Gerät ist verbunden",
   "rule-failed":
     "Die Alarmregel „{rule}“ schlug für {unit_id} fehl und urteilte nicht: {error}",
   "secret-open":
-    "{path} ist für andere lesbar oder änderbar, und das lässt sich nicht entziehen ({error}): dem Benutzer der Station mit Modus 0600 geben; {remedy, select, authority_key {damit lässt sich jede Einheit anmelden: Wenn Fremde diesen Rechner benutzen, eine neue Zertifizierungsstelle anlegen und alle Einheiten neu anmelden} station_key {damit kann sich ein Rechner als diese Station ausgeben: Wenn Fremde diesen benutzen, eine neue Zertifizierungsstelle anlegen und alle Einheiten neu anmelden} first_login {dem Administrator ein anderes Passwort geben} database_password {wenn Fremde diesen Rechner benutzen, dem Benutzer der Datenbank ein anderes Passwort geben} database {wenn Fremde diesen Rechner benutzen, jedem Benutzer ein anderes Passwort geben} other {wenn Fremde diesen Rechner benutzen, einen anderen Schlüssel erzeugen}}",
+    "{path} ist für andere lesbar oder änderbar, und das lässt sich nicht entziehen ({error}): dem Benutzer der Station mit Modus 0600 geben; {remedy, select, authority_key {damit lässt sich jedes Gerät anmelden: Wenn Fremde diesen Rechner benutzen, eine neue Zertifizierungsstelle anlegen und alle Geräte neu anmelden} station_key {damit kann sich ein Rechner als diese Station ausgeben: Wenn Fremde diesen benutzen, eine neue Zertifizierungsstelle anlegen und alle Geräte neu anmelden} first_login {dem Administrator ein anderes Passwort geben} database_password {wenn Fremde diesen Rechner benutzen, dem Benutzer der Datenbank ein anderes Passwort geben} database {wenn Fremde diesen Rechner benutzen, jedem Benutzer ein anderes Passwort geben} other {wenn Fremde diesen Rechner benutzen, einen anderen Schlüssel erzeugen}}",
   "secret-was-open":
-    "{path} war für andere lesbar oder änderbar (Modus {mode}) und wurde für sie gesperrt; {remedy, select, authority_key {damit lässt sich jede Einheit anmelden: Wenn Fremde diesen Rechner benutzen, eine neue Zertifizierungsstelle anlegen und alle Einheiten neu anmelden} station_key {damit kann sich ein Rechner als diese Station ausgeben: Wenn Fremde diesen benutzen, eine neue Zertifizierungsstelle anlegen und alle Einheiten neu anmelden} first_login {dem Administrator ein anderes Passwort geben} database_password {wenn Fremde diesen Rechner benutzen, dem Benutzer der Datenbank ein anderes Passwort geben} database {wenn Fremde diesen Rechner benutzen, jedem Benutzer ein anderes Passwort geben} other {wenn Fremde diesen Rechner benutzen, einen anderen Schlüssel erzeugen}}",
+    "{path} war für andere lesbar oder änderbar (Modus {mode}) und wurde für sie gesperrt; {remedy, select, authority_key {damit lässt sich jedes Gerät anmelden: Wenn Fremde diesen Rechner benutzen, eine neue Zertifizierungsstelle anlegen und alle Geräte neu anmelden} station_key {damit kann sich ein Rechner als diese Station ausgeben: Wenn Fremde diesen benutzen, eine neue Zertifizierungsstelle anlegen und alle Geräte neu anmelden} first_login {dem Administrator ein anderes Passwort geben} database_password {wenn Fremde diesen Rechner benutzen, dem Benutzer der Datenbank ein anderes Passwort geben} database {wenn Fremde diesen Rechner benutzen, jedem Benutzer ein anderes Passwort geben} other {wenn Fremde diesen Rechner benutzen, einen anderen Schlüssel erzeugen}}",
   "sender-floods":
-    "{sender_id} sendet mehr, als eine Einheit es tut (über {most, number} Meldungen oder {most_mb} je Sekunde): Der Überschuss wird verworfen. Sie ausschalten oder sperren: muster pki revoke {sender_id}",
+    "{sender_id} sendet mehr, als ein Gerät es tut (über {most, number} Meldungen oder {most_mb} je Sekunde): Der Überschuss wird verworfen. Es ausschalten oder sperren: muster pki revoke {sender_id}",
   "sender-forged":
     "Ein Sender auf dem Bus gibt sich als die Station aus ({key}): abgewiesen",
   "sender-shut-out":
-    "{sender_id} ({reason}): für {minutes} ausgesperrt, da sie andere aufhält; ihr Träger ist so lange nicht erreichbar: über Sprechfunk fragen. Die Einheit tauschen oder sperren: muster pki revoke {sender_id}",
+    "{sender_id} ({reason}): für {minutes} ausgesperrt, da es andere aufhält; sein Träger ist so lange nicht erreichbar: über Sprechfunk fragen. Das Gerät tauschen oder sperren: muster pki revoke {sender_id}",
   "standby-behind":
     "Die Reservestation ist im Rückstand: Was jetzt geschieht, hat nur diese Station",
   "standby-cut-off":
-    "Keine Meldung von {station} oder einer Einheit kommt an: Diese Station ist wahrscheinlich abgeschnitten. Sie übernimmt, sobald sie eine Einheit empfängt, oder von Hand",
+    "Keine Meldung von {station} oder einem Gerät kommt an: Diese Station ist wahrscheinlich abgeschnitten. Sie übernimmt, sobald sie ein Gerät empfängt, oder von Hand",
   "standby-disk":
     "Der Datenträger dieser Reservestation nimmt die Aufzeichnung nicht an: Platz schaffen oder ihn ersetzen; was fehlt, wird dann geholt",
   "standby-empty":
@@ -135,9 +135,9 @@ export const problem: Part<"problem"> = {
   "station-not-announced":
     "Die Station ist in ihrem Netz nicht angekündigt: {error}",
   "station-not-certified":
-    "Einheiten finden diese Station nicht unter {addresses}, da ihr Zertifikat dafür nicht gilt: mit „muster pki renew-station“ und --host für jede Adresse ein neues erstellen",
+    "Geräte finden diese Station nicht unter {addresses}, da ihr Zertifikat dafür nicht gilt: mit „muster pki renew-station“ und --host für jede Adresse ein neues erstellen",
   "tak-away":
     "Die TAK-Verbindung „{name}“ ({url}) ist seit {away_s} ausgefallen: {reason}",
   "unregistered-messages":
-    "{count, number} Meldungen von mehr nicht registrierten Einheiten, als gezeigt werden",
+    "{count, number} Meldungen von mehr nicht registrierten Geräten, als gezeigt werden",
 };
