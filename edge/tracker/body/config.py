@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-UNKNOWN_PLACE, TRUNK, HAND = range(3)  # where the sensor is
+UNKNOWN_PLACE, TRUNK, HAND, POCKET = range(4)  # where the sensor is
 
 
 class BodyConfig(NamedTuple):
@@ -38,11 +38,14 @@ class BodyConfig(NamedTuple):
     # Step length: an inverted pendulum, see step_length.
     trunk_scale_m: float = 0.91
     hand_scale_m: float = 0.70
+    leg_m: float = 0.9  # hip joint to sole, of a person of whom nothing is known
+    thigh_above_radps: float = 1.0  # turn about level axes while walking; trunks and hands: 0.7
+    thigh_below_radps: float = 0.8
     pivot_radps: float = 1.2  # a turn as fast halves the way of its steps
-    hand_below: float = 0.33  # motion to and fro by that up and down
+    hand_below: float = 0.2  # motion to and fro by that up and down
     trunk_above: float = 0.45
-    hand_tips: float = 0.55  # motion in phase with the upward acceleration, by the other
-    trunk_tips: float = 0.35
+    hand_tips: float = 0.07  # motion in phase with the upward acceleration, by the vertical one
+    trunk_tips: float = 0.15  # ... by that in phase with the downward velocity
     least_motion: float = 0.12  # in phase, by the vertical motion, that has a direction
     recognised_steps: float = 4.0
     place: int = UNKNOWN_PLACE

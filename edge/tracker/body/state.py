@@ -68,6 +68,11 @@ BODY = np.dtype(
         ("phase_sums", np.float64, 4),  # scratch
         ("direction_weight", np.float64),
         ("in_hand", np.bool_),
+        # swing of a thigh: its rate about level axes
+        ("sample_swing_radps", np.float64),  # of the sample
+        ("swing_radps", np.float64),  # mean of the steps of late
+        ("swing_rates_radps", np.float64, TICKS),  # scratch
+        ("in_pocket", np.bool_),
         # path filter
         ("estimate", np.float64, ERRORS),
         ("covariance", np.float64, (ERRORS, ERRORS)),
@@ -103,6 +108,7 @@ TICK = np.dtype(
         ("up_mps2", np.float64),
         ("rise_mps", np.float64),  # vertical velocity, without what is slower than steps
         ("heading_rad", np.float64),
+        ("swing_radps", np.float64),  # about level axes
     ],
     align=True,
 )

@@ -3,7 +3,8 @@
 On legs of length l a step of length L lifts the trunk by h = L^2 / (8 l).  A trunk that swings up
 and down with deviation s of its acceleration and the duration T of a step moves by h ~ s T^2, so
 L = c T sqrt(s); c has the leg in it and is fitted over people.  What a hand holds swings more up
-and down than the trunk, and has a constant of its own.
+and down than the trunk, and has a constant of its own.  A thigh shows its speed
+(``thigh_swing``).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from numba import njit
 
 from edge.tracker.body.config import BodyConfig
 from edge.tracker.body.state import TICKS, BodyState, Ticks
+from edge.tracker.body.thigh_swing import leg_speed
 
 LONGEST_M = 1.8
 
@@ -41,6 +43,8 @@ def step_length(
     deviation_mps2 = math.sqrt(max(squares / count - (total / count) ** 2, 0.0))
     constant = config.hand_scale_m if state.in_hand else config.trunk_scale_m
     length_m = constant * (to_s - from_s) * math.sqrt(deviation_mps2)
+    if state.in_pocket:
+        length_m = leg_speed(ticks, state, from_s, to_s, config) * (to_s - from_s)
     return float(min(length_m / (1.0 + _turning(state, last_rad, to_s, config)), LONGEST_M))
 
 

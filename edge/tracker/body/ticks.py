@@ -45,6 +45,7 @@ def next_tick(
     tick.east_mps2 = before[1] + share * (here[1] - before[1])
     tick.up_mps2 = before[2] + share * (here[2] - before[2])
     tick.heading_rad = state.before_rad + share * (state.heading_rad - state.before_rad)
+    tick.swing_radps = state.sample_swing_radps
     tick.rise_mps = _rise(state, tick.up_mps2, config)
     state.ticks += 1
     return True

@@ -14,9 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from edge.body_places import PLACES, UPPER_BODY
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.attitude import learn_bias, step_attitude
-from edge.tracker.body.config import HAND, BodyConfig
+from edge.tracker.body.config import HAND, POCKET, TRUNK, UNKNOWN_PLACE, BodyConfig
 from edge.tracker.body.height import low_pass_pressure, take_height
 from edge.tracker.body.path_filter import (
     low_pass_field,
@@ -41,6 +42,7 @@ from edge.tracker.body.state import (
 )
 from edge.tracker.body.step_length import step_length
 from edge.tracker.body.steps import begins_to_rise
+from edge.tracker.body.thigh_swing import recognise_thigh, swing_rate
 from edge.tracker.body.ticks import low_pass, next_tick
 from edge.tracker.body.walking_direction import take_direction
 from edge.tracker.interface import TrackBatch
@@ -50,13 +52,15 @@ from edge.tracker.preprocessing.sample_times import regular_time
 from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
 
+_PLACES = {"waist": TRUNK, "hip": TRUNK, "chest": TRUNK, "hand": HAND, "pocket": POCKET}
+
 
 class BodyTracker:
     """Tracker by steps and heading, for any place but the foot; see ``Tracker``."""
 
     def __init__(self, description: SensorDescription, config: BodyConfig | None = None) -> None:
         self.description = description
-        self.config = config or BodyConfig()
+        self.config = config or BodyConfig(place=_place_of(description))
         self._gate = new_input_state(description, self.config.saturation_ratio)
         self._ring = new_ring(description.rate_hz)
         self._trail = np.zeros(len(self._ring), TRAIL)
@@ -66,6 +70,7 @@ class BodyTracker:
         self._state["quaternion_nb"][0, 0] = 1.0
         self._state["event_s"] = self._state["fault_s"] = -np.inf
         self._state["in_hand"] = self.config.place == HAND
+        self._state["in_pocket"] = self.config.place == POCKET
         iron_std_ut, gain_std = _iron_std_ut(description, self.config), description.gain_std
         if gain_std is None:
             gain_std = self.config.gain_std
@@ -91,6 +96,13 @@ class BodyTracker:
         first = int(self._state["released"][0])
         stop = walk(self._ring, self._trail, self._ticks, self._state, self.config, final)
         return rows_of(self._ring, first, stop)
+
+
+def _place_of(description: SensorDescription) -> int:
+    """Place by the description; motion tells the upper body from a leg, and no more."""
+    if description.place == UPPER_BODY:
+        return UNKNOWN_PLACE
+    return _PLACES.get(PLACES.get(description.place, ""), UNKNOWN_PLACE)
 
 
 def _iron_std_ut(description: SensorDescription, config: BodyConfig) -> float:
@@ -137,6 +149,7 @@ def _take(
         state.earth_ut = state.learned_ut
     state.before_rad = state.heading_rad
     dt_s = step_attitude(ring, state, k, config)
+    state.sample_swing_radps = swing_rate(state, sample)
     low_pass(state, dt_s, config)
     low_pass_field(state, sample.mag_ut, dt_s, config)
     low_pass_pressure(state, sample.pressure_pa, dt_s)
@@ -176,6 +189,7 @@ def _end_swing(
         state.swings = 0
         return
     take_direction(ticks, state, from_s, now_s, config)
+    recognise_thigh(ticks, state, from_s, now_s, config)
     scale = 1.0 + state.estimate[SCALE]
     length_m = scale * step_length(ticks, state, from_s, now_s, config)
     # The first foot goes before the first swing; how far is known when the walk goes on.

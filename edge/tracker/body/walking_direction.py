@@ -81,7 +81,7 @@ def _recognise_hand(state: BodyState, config: BodyConfig) -> None:
         state.direction[1] - state.falling[1],
     )
     tipping = math.sqrt(north * north + east * east)
-    if falling < config.hand_below and tipping > config.hand_tips * falling:
+    if falling < config.hand_below and tipping > config.hand_tips:
         state.in_hand = True
     elif falling > config.trunk_above or tipping < config.trunk_tips * falling:
         state.in_hand = False

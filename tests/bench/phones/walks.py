@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -24,9 +24,10 @@ from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.interface import UnitEvidence
 from base_station.site.floor_grid import FloorGrid
 from edge.agent.position_publisher import PositionPublisher
-from edge.app.track import run_tracker
 from edge.clocks.timeline import Timeline
 from edge.sources.recording import RecordingSource, read_truth
+from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 from shared.clock import NS_PER_S, SystemClock
 from shared.envelope import Stamper
 from shared.messages import Position
@@ -63,8 +64,10 @@ class WaypointErrors:
 
 
 def publish_walk(trial: Path, tracker: str) -> PublishedPhone:
-    """Track a recording and publish it."""
-    rows = run_tracker(RecordingSource(trial), tracker, quiet=True)
+    """Track a recording by a unit that is described as held in a hand, and publish it."""
+    source = RecordingSource(trial)
+    worn = make_tracker(tracker, replace(source.description, place="hand"))
+    rows = join_rows([worn.push(source.imu), worn.finish()])
     publisher = PositionPublisher(Stamper("", 1, SystemClock()), RATE_HZ)
     positions = publisher.push(rows, Timeline(mono_origin_ns=ORIGIN_NS))
     truth = read_truth(trial)

@@ -16,9 +16,10 @@ from edge.tracker.track_rows import join_rows
 from tests.rig.exact_steps import RATE_HZ, imu, steps, still
 
 
-def tracked(batch: ImuBatch, *, iron_std_ut: float | None = None):
+def tracked(batch: ImuBatch, *, iron_std_ut: float | None = None, place: str = ""):
     """``iron_std_ut``: of a calibrated compass."""
-    tracker = BodyTracker(SensorDescription("trunk", RATE_HZ, mag_iron_std_ut=iron_std_ut))
+    description = SensorDescription("trunk", RATE_HZ, mag_iron_std_ut=iron_std_ut, place=place)
+    tracker = BodyTracker(description)
     return join_rows([tracker.push(batch), tracker.finish()])
 
 
@@ -115,6 +116,35 @@ def test_a_step_in_a_hand_is_shorter_than_its_swing_looks():
     hand = tracked(imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0)))
     trunk = tracked(imu(still(3.0), steps(40, falling=0.6, rising=0.1), still(3.0)))
     assert hand.distance_m[-1] < 0.9 * trunk.distance_m[-1]
+
+
+@pytest.mark.parametrize("place", ["hip", "lower_back", "chest"])
+def test_what_is_described_as_worn_on_a_trunk_is_not_taken_for_a_hand(place):
+    walk = imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0))
+    assert tracked(walk, place=place).distance_m[-1] > 1.1 * tracked(walk).distance_m[-1]
+
+
+def test_what_motion_shows_to_be_on_the_upper_body_may_be_in_a_hand():
+    walk = imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0))
+    np.testing.assert_array_equal(
+        tracked(walk, place="upper_body").distance_m, tracked(walk).distance_m
+    )
+
+
+def test_a_hand_by_its_description_has_a_hand_s_steps_from_the_first_one():
+    walk = imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0))
+    assert tracked(walk, place="hand").distance_m[-1] < tracked(walk).distance_m[-1] - 0.3
+
+
+@pytest.mark.parametrize("place", ["", "pocket", "thigh"])
+@pytest.mark.parametrize("speed_mps", [0.9, 1.4])
+def test_a_thigh_goes_as_far_as_its_leg_turns_while_the_foot_stands(place, speed_mps):
+    """Whatever the vertical motion: the leg of 0.9 m is slow in stance and fast in the swing."""
+    walked, step_s = steps(60, up_mps2=6.0), 0.55
+    phase = (np.arange(len(walked)) / (2.0 * step_s * RATE_HZ)) % 1.0
+    walked[:, 4] = np.where(phase < 0.6, -1.0, 1.5) * speed_mps / 0.9
+    rows = tracked(imu(still(3.0), walked, still(3.0)), place=place)
+    assert rows.distance_m[-1] == pytest.approx(60 * step_s * speed_mps, rel=0.2 if place else 0.3)
 
 
 def test_motion_without_steps_widens_what_is_stated():
