@@ -32,6 +32,7 @@ from base_station.storage.db.store import Store
 from base_station.views.answer import to_ms
 from shared.channels import department_events_key, department_summary_key
 from shared.clock import ManualClock
+from shared.messages import AlarmParameters
 
 HOUR_MS = 3_600_000
 
@@ -130,6 +131,22 @@ def test_department_shows_incidents_alarms_and_people_in_need_first(
     assert department.find(station="engine-8") == []
     texts = [one.text for one in department.views.events(None, 10)]
     assert texts[0] == "FF-02 fall raised: Anna Berg fell"
+
+
+def test_alarm_is_shown_with_the_newest_code_and_parameters_of_its_sentence(
+    department: Department,
+) -> None:
+    parameters = AlarmParameters(member="{person p1}", duration_s=30.0)
+    alarm = AlarmEvent(
+        *("a1", "no-motion", "FF-02", 1, "raised", "pre-alert", "", "", 1, 2),
+        code="no-motion",
+        parameters=parameters,
+    )
+    late = AlarmEvent("a1", "no-motion", "FF-02", 1, "raised", "", "", "", 1, 1)
+    department.send(PersonEvent("p1", "Anna Berg", "E7", ""), alarm, late)
+    (shown,) = department.views.overview().alarms
+    assert (shown.code, shown.parameters.duration_s) == ("no-motion", 30.0)
+    assert shown.parameters.member == "Anna Berg"
 
 
 def test_silent_station_is_away_and_shown_as_last_reported_also_after_a_restart(
