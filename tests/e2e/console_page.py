@@ -154,7 +154,8 @@ def painted(page: Page, colour: str) -> int:
             const { width, height } = canvas;
             const points = canvas.getContext("2d").getImageData(0, 0, width, height).data;
             for (let i = 0; i < points.length; i += 4)
-              if (wanted.every((value, band) => Math.abs(points[i + band] - value) < 12)) found++;
+              if (points[i + 3] > 128 && // what is faint has the same colour
+                  wanted.every((value, band) => Math.abs(points[i + band] - value) < 12)) found++;
           }
           return found;
         }""",

@@ -51,6 +51,42 @@ describe("a unit on its card", () => {
     expect(followed.picture.unit("a")?.value).toBe(shown);
   });
 
+  it("goes on with the clock seldom while it is not on the screen, and at once where it comes there", () => {
+    const followed = walking();
+    const { picture } = followed;
+    picture.see("a", false);
+    followed.change(11, { position: { north_m: 5 } });
+    const shown = () => picture.unit("a")?.value.position?.north_m;
+    let steps = 0;
+    while (shown() === 1 && steps < 100) {
+      picture.catchUp();
+      steps += 1;
+    }
+    expect(steps).toBeLessThanOrEqual(10);
+    followed.change(12, { position: { north_m: 9 } });
+    picture.nowMs.value = 7_000;
+    picture.catchUp();
+    expect([shown(), picture.nowMsOf("a")]).toEqual([5, 0]);
+    picture.see("a", true);
+    expect([shown(), picture.nowMsOf("a")]).toEqual([9, 7_000]);
+  });
+
+  it("is of one time with what it shows, also where that cannot wait", () => {
+    const followed = walking();
+    followed.picture.see("a", false);
+    followed.picture.nowMs.value = 7_000;
+    followed.change(11, { alarms: ["x"] });
+    expect(followed.picture.nowMsOf("a")).toBe(7_000);
+  });
+
+  it("shows all of a whole picture at once", () => {
+    const followed = walking();
+    followed.picture.see("a", false);
+    followed.change(11, { position: { north_m: 5 } });
+    followed.picture.catchUp(true);
+    expect(followed.picture.unit("a")?.value.position?.north_m).toBe(5);
+  });
+
   it("is gone with the picture that no longer has it", () => {
     const followed = walking();
     followed.change(11, { position: { north_m: 5 } });

@@ -6,7 +6,7 @@ import {
   colourOf,
   isHollow,
   isStrong,
-  labelStyle,
+  labelOf,
   lettersOf,
   type Mark,
 } from "../src/plan/marks";
@@ -246,8 +246,7 @@ describe("the name of somebody on the plan", () => {
     headingRad: 0,
     headingKnown: false,
   } as const;
-  const colours = { text: "#000000", halo: "#ffffff" } as Colours;
-  const nameOf = (change: Partial<Mark>) => labelStyle({ ...mark, ...change }, colours, [0, 25]).getText();
+  const nameOf = (change: Partial<Mark>) => labelOf({ ...mark, ...change });
 
   it("shows danger also where the place is old", () => {
     const looks = { quiet: "grey", immediate: "red", soon: "amber" } as Colours;
@@ -268,14 +267,14 @@ describe("the name of somebody on the plan", () => {
   });
 
   it("says which floor and how old", () => {
-    expect(nameOf({})?.getText()).toBe("Ana");
-    expect(nameOf({ floor: "floor 1", old: true })?.getText()).toBe("Ana, floor 1, 1\u00a0min old");
+    expect(nameOf({})).toBe("Ana");
+    expect(nameOf({ floor: "floor 1", old: true })).toBe("Ana, floor 1, 1\u00a0min old");
   });
 
   it("leaves others room: of a long name it says the beginning, and all that follows it", () => {
     const long = { name: "W".repeat(80), floor: "floor 1", old: true };
-    expect(nameOf(long)?.getText()).toBe(`${"W".repeat(23)}…, floor 1, 1\u00a0min old`);
-    expect(nameOf({ name: "Wolfeschlegel von Bergen" })?.getText()).toBe("Wolfeschlegel von Bergen");
+    expect(nameOf(long)).toBe(`${"W".repeat(23)}…, floor 1, 1\u00a0min old`);
+    expect(nameOf({ name: "Wolfeschlegel von Bergen" })).toBe("Wolfeschlegel von Bergen");
   });
 });
 

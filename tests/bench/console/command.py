@@ -21,6 +21,7 @@ from tests.rig.console_client import Console, watching
 from tests.rig.latency import Latency, latencies_ms, latency_of
 from tests.rig.paced_console import PacedConsole
 from tests.rig.pacing import wait_until
+from tests.rig.recorded_live import RecordedLive, Recorder
 from tests.rig.simulated_units import BenchUnit, speak_in_turn, unit_names
 from tests.rig.station_process import Membership, PlainTcp, StationProcess, station_process
 
@@ -75,7 +76,8 @@ def bench_console(
 ) -> None:
     """Measure the bit rate of a console, the cost of many, and the delay of a slow browser.
 
-    Units, station, consoles and browser share this machine.
+    Units, station, consoles and browser share this machine.  At last the browser shows a recording
+    of that, alone.
     """
     with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
         names = unit_names(units)
@@ -106,9 +108,14 @@ def _measure(
         time.sleep(_SETTLE_S)
         wire = _measure_wire(station, seconds)
         loads = [_measure_load(station, units, count, seconds) for count in (1, consoles)]
-        pages = [measure_page(station.api, rate, seconds) for rate in slowed]
+        with ExitStack() as closing:
+            recorder = Recorder(station.api, closing)
+            pages = [measure_page(station.api, rate, seconds) for rate in slowed]
         spoken_s = time.perf_counter() - began_s
         sent = sum(unit.sent.messages for unit in units)
+    with ExitStack() as closing:
+        recorded = RecordedLive(recorder.recording, closing)
+        pages += [measure_page(station.api, rate, seconds, recorded) for rate in slowed]
     return ConsoleReport(len(units), sent / spoken_s, wire, loads, pages)
 
 
@@ -185,7 +192,7 @@ def _latency(watcher: Console, units: list[BenchUnit], sent: dict[str, int]) -> 
 def _table(report: ConsoleReport) -> Table:
     table = Table(
         title=f"{report.units} units at 5 Hz; {report.reached_hz:,.0f} messages a second in all",
-        caption="Units, station, consoles and browser share one machine.",
+        caption="Units, station, consoles and browser share a machine; a page alone has no units.",
     )
     table.add_column("")
     table.add_column("measured", justify="right")
@@ -207,7 +214,7 @@ def _table(report: ConsoleReport) -> Table:
         )
         table.add_row("the station meanwhile, of one core", f"{load.cpu_share:.0%}", "")
     for page in report.pages:
-        browser = f"browser, slowed {page.slowed:g} times"
+        browser = f"{'page alone' if page.is_alone else 'browser'}, slowed {page.slowed:g} times"
         table.add_row(
             f"{browser}: shown",
             f"{page.shown_hz:.1f} /s",
@@ -222,5 +229,11 @@ def _table(report: ConsoleReport) -> Table:
             f"{browser}: a press, p50 / p95 of {page.presses}",
             f"{page.press_p50_ms:.0f} / {page.press_p95_ms:.0f} ms",
             "200 ms" if page.slowed > 1.0 else "100 ms",
+        )
+        work = page.work
+        table.add_row(
+            f"{browser}: work of its main thread, script / style and layout / all",
+            f"{work.script_ms:.0f} / {work.style_and_layout_ms:.0f} / {work.all_ms:.0f} ms/s",
+            "",
         )
     return table

@@ -4,17 +4,20 @@ press is answered.
 
 from __future__ import annotations
 
+import json
 import random
 import shutil
+import time
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
 
 from shared.errors import UserError
 from tests.rig.console_client import Api
+from tests.rig.recorded_live import RecordedLive
 
 _PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 _SETTLE_MS = 10_000
@@ -24,7 +27,7 @@ _PROBE = """
 window.probe = { shown: [], presses: [] };
 window.WebSocket = class extends WebSocket {
   constructor(url) {
-    super(url);
+    super(window.recordedLive ?? url);
     this.addEventListener("message", (event) => {
       const time = /"now_ms":([0-9]+)/.exec(event.data.slice(0, 200));
       if (time === null) return;
@@ -43,6 +46,22 @@ new PerformanceObserver((list) => {
 
 
 @dataclass(frozen=True, slots=True)
+class PageWork:
+    """Processor time of the page's main thread, milliseconds a second."""
+
+    all_ms: float
+    script_ms: float
+    style_and_layout_ms: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Watched:
+    probe: dict[str, Any]
+    work: PageWork
+    late_ms: float  # what the page gets comes so much later than it was made
+
+
+@dataclass(frozen=True, slots=True)
 class PageReport:
     """Of one page; times in milliseconds."""
 
@@ -55,10 +74,15 @@ class PageReport:
     presses: int
     press_p50_ms: float
     press_p95_ms: float
+    work: PageWork
+    is_alone: bool  # shows a recording: no station and no units beside it
 
 
-def measure_page(api: Api, slowed: float, seconds: float) -> PageReport:
-    """Open the console at its station for so long, and press on people all the while.
+def measure_page(
+    api: Api, slowed: float, seconds: float, recorded: RecordedLive | None = None
+) -> PageReport:
+    """Open the console at its station for so long, and press on people all the while.  With
+    ``recorded`` it gets its live picture from there.
 
     Raises UserError where there is no browser.
     """
@@ -69,26 +93,51 @@ def measure_page(api: Api, slowed: float, seconds: float) -> PageReport:
         browser = playwright.chromium.launch(
             executable_path=program, args=["--no-sandbox", "--disable-gpu"]
         )
-        probe = _watch(browser, api, slowed, seconds)
+        watched = _watch(browser, api, slowed, seconds, recorded)
         browser.close()
-    return _report(probe, slowed, seconds)
+    return _report(watched, slowed, seconds, is_alone=recorded is not None)
 
 
-def _watch(browser: Browser, api: Api, slowed: float, seconds: float) -> dict[str, Any]:
+def _watch(
+    browser: Browser, api: Api, slowed: float, seconds: float, recorded: RecordedLive | None
+) -> _Watched:
     name, _, value = api.cookie.partition("=")
-    context = browser.new_context(viewport={"width": 1920, "height": 1080})
+    context = browser.new_context(
+        viewport={"width": 1920, "height": 1080},
+        bypass_csp=recorded is not None,  # it connects to another address than the station's
+    )
     context.set_default_timeout(120_000)
     context.add_cookies([{"name": name, "value": value, "url": api.origin}])
     page = context.new_page()
+    if recorded is not None:
+        page.add_init_script(f"window.recordedLive = {json.dumps(recorded.url)};")
     page.add_init_script(_PROBE)
     page.goto(api.origin)
     page.locator("li.card").first.wait_for()
-    context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": slowed})
+    devtools = context.new_cdp_session(page)
+    devtools.send("Emulation.setCPUThrottlingRate", {"rate": slowed})
+    devtools.send("Performance.enable", {"timeDomain": "threadTicks"})
     page.wait_for_timeout(_SETTLE_MS)
     page.evaluate("window.probe.shown = []; window.probe.presses = [];")
+    before, began_s = _durations_s(devtools), time.perf_counter()
     _press_people(page, seconds)
-    probe: dict[str, Any] = page.evaluate("window.probe")
-    return probe
+    after, passed_s = _durations_s(devtools), time.perf_counter() - began_s
+    spent_ms = {part: 1e3 * (after[part] - before[part]) / passed_s for part in after}
+    return _Watched(
+        page.evaluate("window.probe"),
+        PageWork(
+            all_ms=spent_ms["TaskDuration"],
+            script_ms=spent_ms["ScriptDuration"],
+            style_and_layout_ms=spent_ms["RecalcStyleDuration"] + spent_ms["LayoutDuration"],
+        ),
+        late_ms=0.0 if recorded is None else 1e3 * recorded.late_s,
+    )
+
+
+def _durations_s(devtools: CDPSession) -> dict[str, float]:
+    """Spent by the main thread since the page was opened, by kind of work."""
+    metrics = devtools.send("Performance.getMetrics")["metrics"]
+    return {one["name"]: one["value"] for one in metrics if one["name"].endswith("Duration")}
 
 
 def _press_people(page: Page, seconds: float) -> None:
@@ -102,9 +151,10 @@ def _press_people(page: Page, seconds: float) -> None:
         page.wait_for_timeout(_PRESS_EVERY_MS)
 
 
-def _report(probe: dict[str, Any], slowed: float, seconds: float) -> PageReport:
+def _report(watched: _Watched, slowed: float, seconds: float, *, is_alone: bool) -> PageReport:
+    probe = watched.probe
     shown = probe["shown"]
-    ages_ms = [then_ms - now_ms for (_, now_ms), (then_ms, _) in pairwise(shown)]
+    ages_ms = [then_ms - now_ms - watched.late_ms for (_, now_ms), (then_ms, _) in pairwise(shown)]
     presses = probe["presses"] or [float("nan")]
     age_p50, age_p95, age_max = np.percentile(ages_ms or [float("nan")], (50, 95, 100))
     press_p50, press_p95 = np.percentile(presses, (50, 95))
@@ -118,4 +168,6 @@ def _report(probe: dict[str, Any], slowed: float, seconds: float) -> PageReport:
         presses=len(probe["presses"]),
         press_p50_ms=float(press_p50),
         press_p95_ms=float(press_p95),
+        work=watched.work,
+        is_alone=is_alone,
     )

@@ -13,13 +13,13 @@ export function cannotShow(what: string, error: unknown): string {
 }
 
 /** Do it; that it fails is said on the screen. */
-export function guarded(what: string, work: () => void): boolean {
+export function guarded(what: string | (() => string), work: () => void): boolean {
   try {
     work();
     return true;
   } catch (error) {
     console.error(error);
-    report(cannotShow(what, error));
+    report(cannotShow(typeof what === "string" ? what : what(), error));
     return false;
   }
 }

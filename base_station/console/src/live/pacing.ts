@@ -1,5 +1,6 @@
 /** How soon the station may send more: it is told what was shown, and sends what changed since then as one
  * message.  A page that is slow shows less often, never something old, and keeps time for whoever presses. */
+import { noteFrame } from "./frameCost";
 
 /** What of the browser is used; tests put their own in. */
 export interface Screen {
@@ -62,6 +63,7 @@ export class Pacing {
     this.screen.afterFrame(() => {
       const shown = this.count;
       const busyMs = this.screen.nowMs() - beganMs;
+      noteFrame(busyMs);
       this.screen.later(() => this.rested(shown), Math.min(busyMs, LONGEST_REST_MS));
     });
   }

@@ -23,6 +23,16 @@ import type { State } from "./state";
 export type LinkState = { kind: "connecting" } | { kind: "up" } | { kind: "down"; sinceMs: number };
 
 const SILENCE_MS = 3000;
+/** A card that is not on the screen is brought up to date with every so many steps of the clock, in turn with
+ * the others: read aloud, it is never far behind. */
+const UNSEEN_TURNS = 10;
+
+/** What the card of a unit shows, and of which time. */
+interface Card {
+  readonly view: Signal<UnitView>;
+  readonly nowMs: Signal<number>;
+  isSeen: boolean;
+}
 
 export class Picture {
   readonly link = signal<LinkState>({ kind: "connecting" });
@@ -63,18 +73,32 @@ export class Picture {
     openAlarms(this.alarms.value.values()),
   );
 
-  private readonly units = new Map<string, Signal<UnitView>>();
+  private readonly cards = new Map<string, Card>();
   private latest: State["units"] = new Map();
   private shown: State["units"] = new Map();
   private unassigned: readonly UnitView[] = [];
   private state: State | null = null;
   private wanted: string | null = null;
-  /** What cards show with the next step of the clock. */
+  /** What cards show with a next step of the clock. */
   private readonly waiting = new Map<string, UnitView>();
+  private turn = 0;
 
   /** The signal of one unit; it exists for every id in `unitIds`. */
   unit(unitId: string): Signal<UnitView> | undefined {
-    return this.units.get(unitId);
+    return this.cards.get(unitId)?.view;
+  }
+
+  /** The time that the card of a unit shows: that of what `unit` has. */
+  nowMsOf(unitId: string): number {
+    return (this.cards.get(unitId)?.nowMs ?? this.nowMs).value;
+  }
+
+  /** Whether a card is on the screen; it is until that is known. */
+  see(unitId: string, isSeen: boolean): void {
+    const card = this.cards.get(unitId);
+    if (card === undefined || card.isSeen === isSeen) return;
+    card.isSeen = isSeen;
+    if (isSeen) batch(() => this.bringUp(unitId, card));
   }
 
   /** All units of the incident that is shown as they are, without listening to them. */
@@ -136,15 +160,25 @@ export class Picture {
     });
   }
 
-  /** Cards show where everybody is now; call it with the steps of the clock, which draw them anyway. */
-  catchUp(): void {
+  /** Cards show where everybody is now; call it with the steps of the clock, which draw them anyway.
+   * `all`: of the unseen ones not only those whose turn it is. */
+  catchUp(all = false): void {
+    this.turn = (this.turn + 1) % UNSEEN_TURNS;
+    let number = 0;
     batch(() => {
-      for (const [unitId, unit] of this.waiting) {
-        const shown = this.units.get(unitId);
-        if (shown !== undefined) shown.value = unit;
+      for (const [unitId, card] of this.cards) {
+        const isTurn = number++ % UNSEEN_TURNS === this.turn;
+        if (all || card.isSeen || isTurn) this.bringUp(unitId, card);
       }
     });
-    this.waiting.clear();
+  }
+
+  private bringUp(unitId: string, card: Card): void {
+    card.nowMs.value = this.nowMs.peek();
+    const unit = this.waiting.get(unitId);
+    if (unit === undefined) return;
+    this.waiting.delete(unitId);
+    card.view.value = unit;
   }
 
   private showUnits(units: State["units"]): void {
@@ -152,23 +186,23 @@ export class Picture {
     for (const [unitId, unit] of units) {
       if (this.latest.get(unitId) === unit) continue;
       changed = true;
-      const shown = this.units.get(unitId);
-      if (shown === undefined) this.units.set(unitId, signal(unit));
-      else if (isSteady(shown.peek(), unit)) this.waiting.set(unitId, unit);
-      else {
-        this.waiting.delete(unitId);
-        shown.value = unit;
+      const card = this.cards.get(unitId);
+      if (card === undefined) {
+        this.cards.set(unitId, { view: signal(unit), nowMs: signal(this.nowMs.peek()), isSeen: true });
+        continue;
       }
+      this.waiting.set(unitId, unit);
+      if (!isSteady(card.view.peek(), unit)) this.bringUp(unitId, card);
     }
     this.latest = units;
-    for (const unitId of [...this.units.keys()]) {
+    for (const unitId of [...this.cards.keys()]) {
       if (units.has(unitId)) continue;
       this.waiting.delete(unitId);
-      changed = this.units.delete(unitId);
+      changed = this.cards.delete(unitId);
     }
     if (!changed) return;
     this.unitsChanged.value += 1;
-    const ids = [...this.units.keys()];
+    const ids = [...this.cards.keys()];
     const before = this.unitIds.peek();
     if (ids.length !== before.length || ids.some((id, i) => id !== before[i])) {
       this.unitIds.value = ids;

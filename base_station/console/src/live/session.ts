@@ -68,7 +68,7 @@ export class Session {
       if (this.picture.link.peek().kind !== "up") this.picture.link.value = { kind: "up" };
       this.picture.show(state);
       // Everything that shows an age renders with the clock, so deltas do not drive it.
-      if (message.type === "snapshot") this.tick();
+      if (message.type === "snapshot") this.tick(true);
     });
   }
 
@@ -88,12 +88,12 @@ export class Session {
     this.picture.link.value = { kind: "down", sinceMs: performance.now() };
   }
 
-  private tick(): void {
+  private tick(whole = false): void {
     if (this.state === null) return;
     const nowMs = this.clock.now(this.local.now());
     batch(() => {
       this.picture.nowMs.value = nowMs;
-      this.picture.catchUp();
+      this.picture.catchUp(whole);
     });
   }
 }

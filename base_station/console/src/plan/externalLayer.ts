@@ -8,6 +8,7 @@ import VectorSource from "ol/source/Vector";
 import { Fill, RegularShape, Stroke, Style, Text } from "ol/style";
 import type { ExternalMarkerView } from "../wire";
 import { faint, type Colours } from "./colours";
+import { emptied } from "./emptied";
 import { externalLabel, isStale } from "./external";
 import { siteCoordinate } from "./site";
 
@@ -28,7 +29,7 @@ export class ExternalLayer {
   readonly layer = new VectorLayer({ source: this.source, declutter: true });
 
   show({ external, nowMs }: ExternalScene, colours: Colours): void {
-    this.source.clear(true);
+    emptied(this.source);
     for (const one of external) {
       const colour = colourOf(one, nowMs, colours);
       const at = siteCoordinate(one);

@@ -11,6 +11,7 @@ import { t } from "../language/translate";
 import type { FloorChoice } from "../uiState";
 import type { TrailPoint } from "../wire";
 import type { Colours } from "./colours";
+import { emptied } from "./emptied";
 import { countUntil, placeAt } from "./imports";
 import { trailLines, TRAIL_MS } from "./trail";
 
@@ -31,7 +32,7 @@ export class ImportLayer {
   readonly layer = new VectorLayer({ source: this.source, declutter: true });
 
   show({ imports, nowMs, floor }: ImportScene, colours: Colours): void {
-    this.source.clear(true);
+    emptied(this.source);
     for (const { tracks, picture_url } of imports) {
       for (const { name, points } of tracks) {
         if (picture_url !== null) this.addPhoto(name, picture_url, points, nowMs, colours);

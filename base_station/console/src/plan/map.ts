@@ -9,6 +9,7 @@ import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
 import type { Route } from "../api";
 import type { Units } from "../language/measures";
+import { isSlow } from "../live/frameCost";
 import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
@@ -17,7 +18,8 @@ import { readColours, type Colours } from "./colours";
 import { edgeMarks, type EdgeMark, type Outside } from "./edges";
 import { ExternalLayer, type ExternalScene } from "./externalLayer";
 import { FloorPictureLayer } from "./floorPicture";
-import { PeopleLayer, type Scene } from "./peopleLayer";
+import { PeopleLayer } from "./peopleLayer";
+import type { Scene } from "./peopleScene";
 import { Grid } from "./grid";
 import { ImportLayer, type ImportScene } from "./importLayer";
 import { fitMargins, leastMargins } from "./margins";
@@ -92,7 +94,8 @@ export class PlanMap {
         this.external.layer,
         this.imported.layer,
         this.pins.labelLayer,
-        ...this.peopleLayer.layers,
+        this.peopleLayer.obstacles.layer,
+        this.peopleLayer,
         this.pins.layer,
       ],
       interactions: defaults().extend([this.dragging()]),
@@ -305,5 +308,5 @@ function placeOf([east_m = 0, north_m = 0]: number[]): Place {
 
 function moving(): { duration: number } {
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-  return { duration: still ? 0 : MOVE_MS };
+  return { duration: still || isSlow() ? 0 : MOVE_MS };
 }

@@ -1,11 +1,9 @@
 /** How a person is drawn on the plan: trail, mark with heading, label. */
-import { Fill, Stroke, Style, Text } from "ol/style";
-import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
 import { age, planLabel } from "../format";
 import { t } from "../language/translate";
 import { faint, type Colours } from "./colours";
-import type { Pixel } from "./names";
+import type { Context } from "./sprites";
 
 /** What the plan needs to know of one person. */
 export interface Mark {
@@ -30,16 +28,14 @@ const CORNERS: Partial<Record<Urgency, readonly [count: number, first: number]>>
 const RADIUS_PX = 13;
 const DANGER_RADIUS_PX = 17; // has room for the initials beside "!"
 const ARROW_PX = 10;
+export const HALO_PX = 4;
+/** From the middle of a mark, the farthest that anything of it is drawn. */
+export const MARK_REACH_PX = DANGER_RADIUS_PX + ARROW_PX + 3;
 
-export function trailStyle(mark: Mark, colours: Colours): Style {
-  const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
-  return new Style({
-    stroke: new Stroke({
-      color: faint(colour, mark.chosen ? 0.95 : 0.55),
-      width: mark.chosen ? 3.5 : 2.5,
-      lineJoin: "round",
-    }),
-  });
+/** How the way walked is drawn. */
+export function trailLook({ chosen, urgency }: Mark, colours: Colours): { color: string; widthPx: number } {
+  const colour = chosen ? colours.chosen : colours[urgency];
+  return { color: faint(colour, chosen ? 0.95 : 0.55), widthPx: chosen ? 3.5 : 2.5 };
 }
 
 /** What is old is pale, but not where somebody is in danger: that is looked for first. */
@@ -73,39 +69,36 @@ export function isStrong({ chosen, urgency }: Mark): boolean {
   return chosen || urgency === "immediate";
 }
 
-/** Names of rooms and pins keep clear of it. */
-export function labelStyle(mark: Mark, colours: Colours, [offsetX, offsetY]: Pixel): Style {
-  return new Style({
-    zIndex: isStrong(mark) ? 2 : 1,
-    text: new Text({
-      text: labelOf(mark),
-      font: labelFont(mark),
-      offsetX,
-      offsetY,
-      fill: new Fill({ color: colours.text }),
-      stroke: new Stroke({ color: colours.halo, width: 4 }),
-      padding: [1, 3, 1, 3],
-      declutterMode: "obstacle",
-    }),
-  });
+/** The name as it is written, its middle at the origin. */
+export function drawName(context: Context, mark: Mark, colours: Colours): void {
+  context.font = labelFont(mark);
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.lineJoin = "round";
+  context.lineWidth = HALO_PX;
+  context.strokeStyle = colours.halo;
+  context.strokeText(labelOf(mark), 0, 0);
+  context.fillStyle = colours.text;
+  context.fillText(labelOf(mark), 0, 0);
 }
 
-export function markStyle(mark: Mark, colours: Colours): Style {
-  return new Style({
-    zIndex: mark.chosen ? 3 : mark.urgency === "immediate" ? 2 : 1,
-    renderer: (at, state) => drawMark(at as number[], state, mark, colours),
-  });
+/** Over others: who is chosen, then who is in danger. */
+export function rankOf({ chosen, urgency }: Mark): number {
+  if (chosen) return 3;
+  return urgency === "immediate" ? 2 : 1;
 }
 
-function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours): void {
-  const { context, pixelRatio } = state;
-  context.save();
-  context.translate(at[0] ?? 0, at[1] ?? 0);
-  context.scale(pixelRatio, pixelRatio);
+/** All that makes a mark look different from another, but for where it heads. */
+export function looksOf(mark: Mark): string {
+  const { urgency, chosen, old, floorBadge } = mark;
+  return [urgency, chosen, isHollow(mark), old, lettersOf(mark), floorBadge].join(" ");
+}
+
+/** Without its heading, its middle at the origin. */
+export function drawMark(context: Context, mark: Mark, colours: Colours): void {
   const colour = colourOf(mark, colours);
-  const radiusPx = mark.urgency === "immediate" ? DANGER_RADIUS_PX : RADIUS_PX;
+  const radiusPx = radiusOf(mark);
   const hollow = isHollow(mark);
-  if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, radiusPx, colour, colours.halo);
   outline(context, mark.urgency, radiusPx);
   context.fillStyle = hollow ? colours.halo : colour;
   context.fill();
@@ -119,7 +112,10 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.textBaseline = "middle";
   context.fillText(lettersOf(mark), 0, 0.5, 2 * radiusPx - 4);
   drawFloorBadge(context, mark.floorBadge, radiusPx, colour, colours.halo);
-  context.restore();
+}
+
+export function radiusOf({ urgency }: Pick<Mark, "urgency">): number {
+  return urgency === "immediate" ? DANGER_RADIUS_PX : RADIUS_PX;
 }
 
 /** Urgency as a shape, where colours look alike: immediate is an octagon, soon a square on its corner,
@@ -140,8 +136,6 @@ function outline(context: Context, urgency: Urgency, radiusPx: number): void {
   context.closePath();
 }
 
-type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
-
 /** At the upper right of the mark. */
 function drawFloorBadge(context: Context, text: string, radiusPx: number, colour: string, halo: string): void {
   if (text === "") return;
@@ -157,14 +151,13 @@ function drawFloorBadge(context: Context, text: string, radiusPx: number, colour
 }
 
 /** A point on the rim, towards the heading (clockwise from north, which is up). */
-function drawArrow(
+export function drawArrow(
   context: Context,
   headingRad: number,
   radiusPx: number,
   colour: string,
   halo: string,
 ): void {
-  context.save();
   context.rotate(headingRad);
   context.beginPath();
   context.moveTo(0, -radiusPx - ARROW_PX);
@@ -177,5 +170,4 @@ function drawArrow(
   context.stroke();
   context.fillStyle = colour;
   context.fill();
-  context.restore();
 }

@@ -5,6 +5,7 @@ import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { Stroke, Style } from "ol/style";
 import type { FloorChoice } from "../uiState";
+import { emptied } from "./emptied";
 import type { Colours } from "./colours";
 import type { PastTrails, TrailKind } from "./pastTrails";
 import type { TrailPoint } from "../wire";
@@ -24,7 +25,7 @@ export class PastLayer {
   readonly layer = new VectorLayer({ source: this.source });
 
   show({ past, shown, nowMs, floor, chosen }: PastScene, colours: Colours): void {
-    this.source.clear(true);
+    emptied(this.source);
     for (const { kind, trails } of past) {
       const stroke = strokeOf(kind, colours);
       for (const [unitId, points] of trails) {

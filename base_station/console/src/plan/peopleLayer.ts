@@ -1,74 +1,33 @@
-/** People on the plan: layers whose features follow the picture. */
-import type { Extent } from "ol/extent";
-import Feature from "ol/Feature";
-import MultiLineString from "ol/geom/MultiLineString";
-import Point from "ol/geom/Point";
-import VectorLayer from "ol/layer/Vector";
+/** People on the plan, on a canvas of their own: when they move, nothing else of the map is drawn again. */
+import { boundingExtent, containsXY, createEmpty, extend, type Extent } from "ol/extent";
+import Layer from "ol/layer/Layer";
+import type { FrameState } from "ol/Map";
 import { measureTextWidth } from "ol/render/canvas";
-import VectorSource from "ol/source/Vector";
-import { guarded } from "../live/faults";
-import { displayName, urgencyOf } from "../live/urgency";
-import type { FloorChoice } from "../uiState";
-import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
-import { initials } from "../format";
-import { t } from "../language/translate";
 import type { Colours } from "./colours";
-import { isOld, outline } from "./ellipse";
-import { floorBadge, floorRemark, floorsUp } from "./floors";
 import {
+  colourOf,
+  drawArrow,
+  drawMark,
+  drawName,
+  HALO_PX,
   isStrong,
   labelFont,
   labelOf,
-  labelStyle,
-  markStyle,
-  trailStyle,
-  type Mark,
+  looksOf,
+  MARK_REACH_PX,
+  radiusOf,
+  rankOf,
+  trailLook,
 } from "./marks";
-import {
-  BESIDE,
-  boxesOf,
-  placeNames,
-  type Box,
-  type Named,
-  type Place,
-  type Screen,
-  type Side,
-} from "./names";
-import { RegionLayer } from "./regionLayer";
-import { siteCoordinate } from "./site";
-import { spanMs, trailLines } from "./trail";
+import { NameObstacles } from "./nameObstacles";
+import { BESIDE, boxesOf, placeNames, type Box, type Named, type Pixel, type Place, type Side } from "./names";
+import { shownPeople, type Scene, type Shown } from "./peopleScene";
+import { Regions, type PixelOf } from "./regions";
+import { Sprites, type Context } from "./sprites";
 
-export interface Scene {
-  units: readonly UnitView[];
-  alarms: ReadonlyMap<string, AlarmView>;
-  trails: ReadonlyMap<string, readonly TrailPoint[]>;
-  nowMs: number;
-  silentMs: number;
-  floor: FloorChoice;
-  chosen: string | null;
-  colours: Colours;
-  screen: Screen;
-}
-
-const HEADING_KNOWN_RAD = 0.8;
-const LABEL_LIMIT = 12;
-
-/** Somebody who is to be drawn. */
-interface Shown {
-  unit: UnitView;
-  looks: Mark;
-  centre: [number, number];
-  border: [number, number][];
-  figure: Figure;
-}
-
-/** The features of one person, and on which side the name stands. */
-interface Figure {
-  named: Side | null;
-  trail: Feature<MultiLineString>;
-  mark: Feature<Point>;
-  label: Feature<Point>;
-}
+/** A heading is drawn to five degrees. */
+const HEADINGS = 72;
+const LINE_PX = 20;
 
 /** A member in danger, as drawn. */
 export interface Endangered {
@@ -78,153 +37,152 @@ export interface Endangered {
   centre: [number, number];
 }
 
-export class PeopleLayer {
+/** As drawn, with where the name stands; null: nowhere. */
+interface Drawn extends Shown {
+  name: Place | null;
+}
+
+export class PeopleLayer extends Layer {
   /** As last shown. */
   endangered: readonly Endangered[] = [];
-  private readonly figures = new Map<string, Figure>();
-  private readonly trails = new VectorSource<Feature<MultiLineString>>();
-  private readonly regions = new RegionLayer();
-  private readonly marks = new VectorSource<Feature<Point>>();
-  private readonly labels = new VectorSource<Feature<Point>>();
-  readonly layers = [
-    this.regions.layer,
-    new VectorLayer({ source: this.trails }),
-    new VectorLayer({ source: this.marks }),
-    new VectorLayer({ source: this.labels, declutter: true }),
-  ];
+  readonly obstacles = new NameObstacles();
+  private readonly canvas = document.createElement("canvas");
+  private readonly sprites = new Sprites();
+  private readonly regions = new Regions();
+  private readonly sides = new Map<string, Side>(); // on which each name stands
+  private drawn: readonly Drawn[] = [];
+  private colours: Colours | null = null;
+  private frame: FrameState | null = null; // the newest of the map
 
-  /** Answers what people and their names cover of the screen. */
+  constructor() {
+    super({});
+    this.canvas.className = "people-canvas";
+  }
+
+  /** Returns what people and their names cover of the screen. */
   show(scene: Scene): Box[] {
-    const shown = new Map<string, Shown>();
-    for (const unit of scene.units) {
-      guarded(t("plan.unit", { unit: unit.unit_id }), () => {
-        const { position } = unit;
-        if (position === null || !isShown(unit, position, scene)) return;
-        const looks = markOf(unit, position, scene);
-        const centre = siteCoordinate(position);
-        const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
-        shown.set(unit.unit_id, { unit, looks, centre, border, figure: this.figure(unit.unit_id) });
-      });
-    }
-    for (const unitId of this.figures.keys()) {
-      if (!shown.has(unitId)) this.forget(unitId);
-    }
-    const all = [...shown.values()];
+    const all = shownPeople(scene);
+    const named = all.map(({ unitId, centre, looks }): Named => ({
+      mark: scene.screen.pixelOf(centre) ?? BESIDE,
+      widthPx: measureTextWidth(labelFont(looks), labelOf(looks)),
+      strong: isStrong(looks),
+      before: this.sides.get(unitId) ?? null,
+    }));
+    const places = placeNames(named, scene.screen);
+    this.drawn = all.map((one, i) => ({ ...one, name: places[i] ?? null }));
+    this.sides.clear();
+    for (const { unitId, name } of this.drawn) if (name !== null) this.sides.set(unitId, name.side);
     this.endangered = all
       .filter(({ looks }) => looks.urgency === "immediate")
-      .map(({ unit, looks, centre }) => ({
-        unitId: unit.unit_id,
-        name: looks.name,
-        initials: looks.initials,
-        centre,
-      }));
-    const named = namedOf(all, scene.screen);
-    const places = placeNames(named, scene.screen);
-    this.regions.show(all, scene.colours);
-    all.forEach((one, i) =>
-      guarded(t("plan.unit", { unit: one.unit.unit_id }), () => draw(one, places[i] ?? null, scene)),
-    );
+      .map(({ unitId, looks: { name, initials }, centre }) => ({ unitId, name, initials, centre }));
+    this.colours = scene.colours;
+    this.obstacles.show(this.drawn, performance.now());
+    if (this.frame === null) this.changed();
+    else this.paint(this.frame);
     return named.flatMap((one, i) => boxesOf(one, places[i] ?? null));
   }
 
-  /** Where people are, without the regions about them. */
+  /** Where people are, without the regions about them; null: no person is shown. */
   extent(): Extent | null {
-    return this.marks.getExtent() ?? null;
+    if (this.drawn.length === 0) return null;
+    return extend(createEmpty(), boundingExtent(this.drawn.map(({ centre }) => centre)));
   }
 
   /** The unit whose mark is nearest to a coordinate, and where it is. */
-  nearest(coordinate: number[]): { unitId: string; at: number[] } | null {
-    const feature = this.marks.getClosestFeatureToCoordinate(coordinate);
-    const at = feature?.getGeometry()?.getCoordinates();
-    return feature && at ? { unitId: String(feature.getId()), at } : null;
+  nearest([x = 0, y = 0]: number[]): { unitId: string; at: number[] } | null {
+    let [best, leastM]: [Drawn | null, number] = [null, Infinity];
+    for (const one of this.drawn) {
+      const apartM = Math.hypot(one.centre[0] - x, one.centre[1] - y);
+      if (apartM < leastM) [best, leastM] = [one, apartM];
+    }
+    return best === null ? null : { unitId: best.unitId, at: best.centre };
   }
 
-  private figure(unitId: string): Figure {
-    const known = this.figures.get(unitId);
-    if (known !== undefined) return known;
-    const figure = {
-      named: null,
-      trail: new Feature(new MultiLineString([])),
-      mark: new Feature(new Point([0, 0])),
-      label: new Feature(new Point([0, 0])),
-    };
-    for (const feature of [figure.trail, figure.mark, figure.label]) feature.setId(unitId);
-    this.trails.addFeature(figure.trail);
-    this.marks.addFeature(figure.mark);
-    this.labels.addFeature(figure.label);
-    this.figures.set(unitId, figure);
-    return figure;
+  /** With the rest of the map, where that is moved. */
+  override render(frame: FrameState | null): HTMLElement {
+    if (frame === null) return this.canvas;
+    this.frame = frame;
+    this.paint(frame);
+    return this.canvas;
   }
 
-  private forget(unitId: string): void {
-    const figure = this.figures.get(unitId);
-    if (figure === undefined) return;
-    this.figures.delete(unitId);
-    this.trails.removeFeature(figure.trail);
-    this.marks.removeFeature(figure.mark);
-    this.labels.removeFeature(figure.label);
+  private paint({ size, pixelRatio, coordinateToPixelTransform }: FrameState): void {
+    const context = this.canvas.getContext("2d");
+    const { colours } = this;
+    if (context === null || colours === null) return;
+    const [width = 0, height = 0] = size;
+    fit(this.canvas, context, Math.round(width * pixelRatio), Math.round(height * pixelRatio));
+    const [a = 1, b = 0, c = 0, d = 1, e = 0, f = 0] = coordinateToPixelTransform;
+    const pixelOf: PixelOf = ([x = 0, y = 0]) => [a * x + c * y + e, b * x + d * y + f];
+    context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
+    const onScreen = [0, 0, width, height];
+    this.regions.draw(context, this.drawn.filter(({ border }) => isSeen(border, pixelOf, onScreen)), pixelOf, colours);
+    for (const one of this.drawn) drawTrail(context, one, pixelOf, colours);
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    this.sprites.begin(pixelRatio, colours);
+    const near = [-MARK_REACH_PX, -MARK_REACH_PX, width + MARK_REACH_PX, height + MARK_REACH_PX];
+    const seen = this.drawn.filter(({ centre }) => containsXY(near, ...pixelOf(centre)));
+    seen.sort((one, other) => rankOf(one.looks) - rankOf(other.looks));
+    for (const one of seen) this.drawMark(context, one, pixelOf(one.centre), colours);
+    for (const one of seen) this.drawName(context, one, pixelOf(one.centre), colours);
+  }
+
+  private drawMark(context: Context, { looks }: Drawn, at: Pixel, colours: Colours): void {
+    const size: Pixel = [2 * MARK_REACH_PX, 2 * MARK_REACH_PX];
+    if (looks.headingKnown && !looks.old) {
+      const [radiusPx, colour] = [radiusOf(looks), colourOf(looks, colours)];
+      const step = Math.round((looks.headingRad / (2 * Math.PI)) * HEADINGS);
+      this.sprites.draw(context, `heading ${step} ${radiusPx} ${colour}`, at, size, (sheet) =>
+        drawArrow(sheet, (step / HEADINGS) * 2 * Math.PI, radiusPx, colour, colours.halo),
+      );
+    }
+    this.sprites.draw(context, `mark ${looksOf(looks)}`, at, size, (sheet) => drawMark(sheet, looks, colours));
+  }
+
+  private drawName(context: Context, { looks, name }: Drawn, [x, y]: Pixel, colours: Colours): void {
+    if (name === null) return;
+    const [right, down] = name.offset;
+    const font = labelFont(looks);
+    const text = labelOf(looks);
+    const size: Pixel = [measureTextWidth(font, text) + 2 * HALO_PX, LINE_PX + 2 * HALO_PX];
+    this.sprites.draw(context, `name ${font} ${text}`, [x + right, y + down], size, (sheet) =>
+      drawName(sheet, looks, colours),
+    );
   }
 }
 
-function namedOf(all: readonly Shown[], screen: Screen): Named[] {
-  return all.map(({ centre, looks, figure }) => ({
-    mark: screen.pixelOf(centre) ?? BESIDE,
-    widthPx: measureTextWidth(labelFont(looks), labelOf(looks)),
-    strong: isStrong(looks),
-    before: figure.named,
-  }));
+/** Empty, and as large as the map. */
+function fit(canvas: HTMLCanvasElement, context: Context, width: number, height: number): void {
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+    return;
+  }
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.clearRect(0, 0, width, height);
 }
 
-function draw({ unit, looks, centre, figure }: Shown, name: Place | null, scene: Scene): void {
-  const { trail, mark, label } = figure;
-  const { colours } = scene;
-  const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
-  const drawnMs = spanMs(looks.chosen, looks.urgency);
-  trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor, drawnMs));
-  mark.getGeometry()?.setCoordinates(centre);
-  label.getGeometry()?.setCoordinates(centre);
-  trail.setStyle(trailStyle(looks, colours));
-  mark.setStyle(markStyle(looks, colours));
-  figure.named = name?.side ?? null;
-  label.setStyle(name === null ? [] : labelStyle(looks, colours, name.offset));
+/** Whether anything of a border may be on the screen. */
+function isSeen(border: readonly [number, number][], pixelOf: PixelOf, screen: Extent): boolean {
+  if (border.length === 0) return false;
+  const [left = 0, top = 0, right = 0, bottom = 0] = boundingExtent(border.map((at) => [...pixelOf(at)]));
+  const [x0 = 0, y0 = 0, x1 = 0, y1 = 0] = screen;
+  return right >= x0 && left <= x1 && bottom >= y0 && top <= y1;
 }
 
-/** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who
- * is in danger. */
-function isShown(unit: UnitView, position: PositionView, scene: Scene): boolean {
-  const danger = urgencyOf(unit, scene.alarms) === "immediate";
-  return isHere(position, scene) || danger || unit.unit_id === scene.chosen;
-}
-
-function isHere({ floor }: PositionView, scene: Scene): boolean {
-  return scene.floor === "all" || floor === null || floor === scene.floor;
-}
-
-/** Where somebody can have got to since is asked of who is looked for, and grows over the whole plan:
- * not of a unit that was switched off in order while its wearer was well. */
-function isMissed(unit: UnitView, { urgency }: Mark): boolean {
-  return unit.link === "live" || !unit.switched_off || urgency === "immediate";
-}
-
-/** In a crowd trails would hide the plan: those of whom somebody looks for remain. */
-function hasTrail({ chosen, urgency }: Mark, { units }: Scene): boolean {
-  return units.length <= LABEL_LIMIT || chosen || urgency === "immediate";
-}
-
-function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
-  const name = displayName(unit);
-  const old = isOld(position, scene.nowMs) || position.reach.length > 0;
-  return {
-    name,
-    initials: initials(name),
-    urgency: urgencyOf(unit, scene.alarms),
-    chosen: unit.unit_id === scene.chosen,
-    old,
-    ageMs: scene.nowMs - position.t_ms,
-    floor: floorRemark(position, scene.floor, old),
-    floorsUp: floorsUp(position, scene.floor),
-    floorBadge: floorBadge(position, scene.floor),
-    headingRad: position.heading_rad,
-    headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
-  };
+function drawTrail(context: Context, { looks, trail }: Drawn, pixelOf: PixelOf, colours: Colours): void {
+  if (trail.length === 0) return;
+  const { color, widthPx } = trailLook(looks, colours);
+  context.beginPath();
+  for (const line of trail) {
+    line.forEach((at, i) => {
+      const [x, y] = pixelOf(at);
+      if (i === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
+    });
+  }
+  context.lineCap = context.lineJoin = "round";
+  context.strokeStyle = color;
+  context.lineWidth = widthPx;
+  context.stroke();
 }

@@ -55,6 +55,7 @@ export class PinLayer {
   private chosen: string | null = null;
   private labelled: Labelled[] = [];
   private sides = new Map<string, Side>(); // on which each label stands
+  private placed = ""; // the labels as drawn
   readonly layer = new VectorLayer({ source: this.source });
   /** Below those of people. */
   readonly labelLayer = new VectorLayer({ source: this.labels, declutter: true });
@@ -87,6 +88,9 @@ export class PinLayer {
       };
     });
     const places = placeNames(named, screen);
+    const placed = JSON.stringify([this.labelled, places, colours]);
+    if (placed === this.placed) return; // to draw it anew draws the whole map anew
+    this.placed = placed;
     this.labels.clear(true);
     this.sides = new Map();
     this.labelled.forEach(({ pinId, text, at }, i) => {

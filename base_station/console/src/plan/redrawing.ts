@@ -1,16 +1,21 @@
 /** Redrawing no more often than a drawing can be followed. */
 
 export const REDRAW_MS = 200;
+/** A drawing that takes long comes less often: this many times as long is left to everything else. */
+const REST = 4;
 
 /** Do the work, at most once in each period, some time after it was asked for. */
 export function atMostEvery(periodMs: number, work: () => void): { ask(): void; cancel(): void } {
-  let timer: number | null = null;
+  let timer: ReturnType<typeof setTimeout> | null = null;
+  let tookMs = 0;
   return {
     ask() {
-      timer ??= window.setTimeout(() => {
+      timer ??= setTimeout(() => {
         timer = null;
+        const beganMs = performance.now();
         work();
-      }, periodMs);
+        tookMs = performance.now() - beganMs;
+      }, Math.max(periodMs, REST * tookMs));
     },
     cancel() {
       if (timer !== null) clearTimeout(timer);

@@ -20,6 +20,7 @@ import { isOverdue, ParMark } from "./ParClock";
 import { Photo } from "./Photo";
 import { RescueView } from "./RescueView";
 import { useGuardedPress } from "./useGuardedPress";
+import { useSeen } from "./useSeen";
 import { AskWearer } from "./Wearer";
 
 interface Props {
@@ -36,6 +37,7 @@ export const Card = memo(({ unitId, urgency, place, brief, line, picture }: Prop
   const unit = picture.unit(unitId)?.value;
   const chosen = selectedUnit.value === unitId;
   const card = useInSight(chosen);
+  useSeen(card, unitId, picture);
   const steady = useGuardedPress(place, false);
   if (unit === undefined) return null;
   const choose = steady(() => select(unitId, unit.position?.floor ?? null));
@@ -174,7 +176,7 @@ function crewAndRole(unit: UnitView): string {
 
 function Activity({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const mayday = unit.status?.mayday ?? false;
-  const oldMs = unit.status_ms === null ? 0 : picture.nowMs.value - unit.status_ms;
+  const oldMs = unit.status_ms === null ? 0 : picture.nowMsOf(unit.unit_id) - unit.status_ms;
   const posture = unit.status === null ? "" : format.postureText(unit.status);
   return (
     <span class={`activity ${mayday ? "mayday" : ""}`}>

@@ -23,7 +23,7 @@ const LINK_LEVEL: Record<Link, string> = {
 
 /** State of one person as names and values. */
 export function Facts({ unit, picture }: Props) {
-  const now = picture.nowMs.value;
+  const now = picture.nowMsOf(unit.unit_id);
   return (
     <dl class="facts">
       <Where unit={unit} picture={picture} />
@@ -40,7 +40,7 @@ export function Facts({ unit, picture }: Props) {
 export function BriefFacts({ unit, picture }: Props) {
   const { position, ambient_degc, ambient_ms } = unit;
   if (position === null) return null;
-  const now = picture.nowMs.value;
+  const now = picture.nowMsOf(unit.unit_id);
   const old = isOld(position, now) || picture.silentMs.value > 0;
   return (
     <p class={`brief-facts ${old ? "old" : ""}`}>
@@ -65,7 +65,7 @@ export function placeWords(position: PositionView, picture: Picture, old: boolea
 
 function Where({ unit, picture }: Props) {
   const { position } = unit;
-  const now = picture.nowMs.value;
+  const now = picture.nowMsOf(unit.unit_id);
   if (position === null) {
     return (
       <Fact icon="floor" label={t("fact.position")} width="wide">

@@ -47,7 +47,7 @@ export function whatOrWhere(
   if (!unit.registered) return t("card.unknown_unit");
   if (unit.link !== "live") return format.linkText(unit);
   if (unit.position === null) return t("card.not_located");
-  const old = isOld(unit.position, picture.nowMs.value) || picture.silentMs.value > 0;
+  const old = isOld(unit.position, picture.nowMsOf(unit.unit_id)) || picture.silentMs.value > 0;
   const { floor } = unit.position;
   if (floor === null || old || !format.isFloorLikely(unit.position)) {
     return placeWords(unit.position, picture, old);

@@ -39,9 +39,9 @@ export function ParClock({ picture }: { picture: Picture }) {
 }
 
 /** Whether the mark of this person shows it. */
-export function isOverdue({ duty }: UnitView, picture: Picture): boolean {
+export function isOverdue({ unit_id, duty }: UnitView, picture: Picture): boolean {
   if (duty === null) return false;
-  return parOf(duty, picture.incident.value, picture.nowMs.value).state === "overdue";
+  return parOf(duty, picture.incident.value, picture.nowMsOf(unit_id)).state === "overdue";
 }
 
 interface MarkProps {
@@ -54,7 +54,7 @@ interface MarkProps {
 export function ParMark({ unit, picture, brief = false }: MarkProps) {
   const { duty } = unit;
   if (duty === null) return null;
-  const { state, leftMs } = parOf(duty, picture.incident.value, picture.nowMs.value);
+  const { state, leftMs } = parOf(duty, picture.incident.value, picture.nowMsOf(unit.unit_id));
   return (
     <span class={`par-mark ${state}`} title={t("par.state", { state: confirmationWords(duty) })}>
       <Icon name={ICONS[state]} />

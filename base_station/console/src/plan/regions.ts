@@ -1,14 +1,10 @@
-/** Layer of the 95 % regions of people: an ellipse, or the part within the walls. */
+/** Drawing of the 95 % regions of people: an ellipse, or the part within the walls. */
 import type { Coordinate } from "ol/coordinate";
 import { boundingExtent } from "ol/extent";
-import Feature from "ol/Feature";
-import MultiPolygon from "ol/geom/MultiPolygon";
-import Polygon from "ol/geom/Polygon";
-import VectorLayer from "ol/layer/Vector";
-import VectorSource from "ol/source/Vector";
-import { Fill, Stroke, Style } from "ol/style";
 import { faint, type Colours } from "./colours";
 import { colourOf, type Mark } from "./marks";
+import type { Pixel } from "./names";
+import type { Context } from "./sprites";
 
 export interface DrawnRegion {
   looks: Mark;
@@ -26,41 +22,52 @@ const FULL_HATCHING_M = 20; // the same of an old one's hatching
 const CROWD_HATCHING = 0.15;
 const CROWD_BORDER = 0.35;
 
-export class RegionLayer {
-  private readonly source = new VectorSource<Feature<Polygon | MultiPolygon>>();
-  readonly layer = new VectorLayer({ source: this.source });
+/** A place of the site on the page. */
+export type PixelOf = (coordinate: Coordinate) => Pixel;
+
+export class Regions {
   private readonly patterns = new Map<string, CanvasPattern | string>();
 
-  show(regions: readonly DrawnRegion[], colours: Colours): void {
+  draw(context: Context, regions: readonly DrawnRegion[], pixelOf: PixelOf, colours: Colours): void {
     const { alone, crowds } = parted(regions, colours);
-    this.source.clear(true);
-    this.source.addFeatures([
-      ...alone.map(({ looks, border }) => {
-        const feature = new Feature<Polygon | MultiPolygon>(new Polygon([[...border]]));
-        feature.setStyle(this.styleOf(looks, radiusOf(border), colours));
-        return feature;
-      }),
-      ...[...crowds].map(([colour, borders]) => {
-        const rings = borders.map((border) => [[...border]]);
-        const feature = new Feature<Polygon | MultiPolygon>(new MultiPolygon(rings));
-        const fill = this.hatching(colour, CROWD_HATCHING);
-        feature.setStyle(crowdStyle(fill, faint(colour, CROWD_BORDER)));
-        return feature;
-      }),
-    ]);
+    context.save();
+    for (const one of alone) this.drawAlone(context, one, pixelOf, colours);
+    for (const [colour, borders] of crowds) this.drawCrowd(context, colour, borders, pixelOf);
+    context.restore();
   }
 
-  private styleOf(looks: Mark, radiusM: number, colours: Colours): Style {
+  private drawAlone(context: Context, { looks, border }: DrawnRegion, pixelOf: PixelOf, colours: Colours): void {
     const colour = colourOf(looks, colours);
-    const opacity = filling(looks, radiusM);
-    return new Style({
-      fill: new Fill({ color: looks.old ? this.hatching(colour, opacity) : faint(colour, opacity) }),
-      stroke: new Stroke({
-        color: faint(colour, looks.chosen ? 1 : 0.75),
-        width: looks.chosen ? 2.5 : 1.5,
-        ...(looks.old ? { lineDash: [6, 5] } : {}),
-      }),
-    });
+    const opacity = filling(looks, radiusOf(border));
+    context.beginPath();
+    traceRing(context, border, pixelOf);
+    context.fillStyle = looks.old ? this.hatching(colour, opacity) : faint(colour, opacity);
+    context.fill();
+    context.setLineDash(looks.old ? [6, 5] : []);
+    context.strokeStyle = faint(colour, looks.chosen ? 1 : 0.75);
+    context.lineWidth = looks.chosen ? 2.5 : 1.5;
+    context.stroke();
+  }
+
+  /** One filling for all, that is no darker where regions overlap; and no dashes: those of a hundred wide
+   * borders take seconds. */
+  private drawCrowd(
+    context: Context,
+    colour: string,
+    borders: readonly (readonly Coordinate[])[],
+    pixelOf: PixelOf,
+  ): void {
+    context.beginPath();
+    // Always in the same direction, so that no overlap of two is a hole.
+    for (const border of borders) {
+      traceRing(context, turnsLeft(border) ? border : [...border].reverse(), pixelOf);
+    }
+    context.fillStyle = this.hatching(colour, CROWD_HATCHING);
+    context.fill();
+    context.setLineDash([]);
+    context.strokeStyle = faint(colour, CROWD_BORDER);
+    context.lineWidth = 1;
+    context.stroke();
   }
 
   private hatching(colour: string, opacity: number): CanvasPattern | string {
@@ -104,35 +111,14 @@ function radiusOf(border: readonly Coordinate[]): number {
   return Math.max(east - west, north - south) / 2;
 }
 
-/** One filling for all, that is no darker where regions overlap; and no dashes: those of a hundred wide
- * borders take seconds. */
-function crowdStyle(fill: CanvasPattern | string, stroke: string): Style {
-  return new Style({
-    renderer: (rings, { context, pixelRatio }) => {
-      context.save();
-      context.beginPath();
-      for (const [border] of rings as Coordinate[][][]) traceRing(context, border ?? []);
-      context.fillStyle = fill;
-      context.fill();
-      context.strokeStyle = stroke;
-      context.lineWidth = pixelRatio;
-      context.stroke();
-      context.restore();
-    },
-  });
-}
-
-/** Always in the same direction, so that no overlap of two is a hole. */
-function traceRing(context: Context, border: readonly Coordinate[]): void {
-  const ring = turnsLeft(border) ? border : [...border].reverse();
-  for (const [i, [x = 0, y = 0]] of ring.entries()) {
+function traceRing(context: Context, border: readonly Coordinate[], pixelOf: PixelOf): void {
+  border.forEach((at, i) => {
+    const [x, y] = pixelOf(at);
     if (i === 0) context.moveTo(x, y);
     else context.lineTo(x, y);
-  }
+  });
   context.closePath();
 }
-
-type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
 export function turnsLeft(border: readonly Coordinate[]): boolean {
   let doubleArea = 0;

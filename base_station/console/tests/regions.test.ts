@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Colours } from "../src/plan/colours";
-import { filling, MOST_ALONE, parted, turnsLeft, type DrawnRegion } from "../src/plan/regionLayer";
+import { filling, MOST_ALONE, parted, turnsLeft, type DrawnRegion } from "../src/plan/regions";
 import type { Mark } from "../src/plan/marks";
 
 const COLOURS = { quiet: "#777777", immediate: "#ff0000", soon: "#ffaa00" } as Colours;

@@ -1,0 +1,62 @@
+/** Small drawings that are made once and copied from then on: a mark or a name on the plan costs a copy of
+ * its pixels each time, not a drawing. */
+import type { Pixel } from "./names";
+
+/** Enough for the marks, headings and names of some hundred people; whose age is written has a new name each
+ * second. */
+const MOST = 2000;
+
+export type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+/** What a sprite is drawn on; tests put their own in. */
+export type Sheet = CanvasImageSource & { width: number; height: number };
+
+export class Sprites {
+  private readonly known = new Map<string, Sheet | null>();
+  private ratio = 1;
+  private look: unknown = null;
+
+  constructor(private readonly make: (width: number, height: number, paint: (to: Context) => void) => Sheet | null = painted) {}
+
+  /** Sprites are of one density of pixels and one look, as that of the theme; with others all are made anew. */
+  begin(ratio: number, look: unknown): void {
+    if (ratio === this.ratio && look === this.look) return;
+    this.known.clear();
+    this.ratio = ratio;
+    this.look = look;
+  }
+
+  /** Copy the sprite of this key with its middle at a place of the page.  `paint` draws it about the middle the
+   * first time.  `to` must not be scaled: whole pixels are copied fastest, and stay sharp. */
+  draw(to: Context, key: string, [x, y]: Pixel, [width, height]: Pixel, paint: (to: Context) => void): void {
+    const sheet = this.sheet(key, width, height, paint);
+    if (sheet === null) return;
+    const left = Math.round(x * this.ratio - sheet.width / 2);
+    const top = Math.round(y * this.ratio - sheet.height / 2);
+    to.drawImage(sheet, left, top);
+  }
+
+  private sheet(key: string, width: number, height: number, paint: (to: Context) => void): Sheet | null {
+    const known = this.known.get(key);
+    if (known !== undefined) return known;
+    const { ratio } = this;
+    const [right, down] = [Math.ceil(width * ratio), Math.ceil(height * ratio)];
+    const made = this.make(right, down, (context) => {
+      context.setTransform(ratio, 0, 0, ratio, right / 2, down / 2);
+      paint(context);
+    });
+    if (this.known.size >= MOST) this.known.clear();
+    this.known.set(key, made);
+    return made;
+  }
+}
+
+function painted(width: number, height: number, paint: (to: Context) => void): Sheet | null {
+  const sheet = document.createElement("canvas");
+  sheet.width = width;
+  sheet.height = height;
+  const context = sheet.getContext("2d");
+  if (context === null) return null;
+  paint(context);
+  return sheet;
+}

@@ -1,0 +1,44 @@
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { atMostEvery } from "../src/plan/redrawing";
+
+beforeEach(() => void vi.useFakeTimers());
+afterEach(() => void vi.useRealTimers());
+
+function drawing(takesMs: number) {
+  const drawnMs: number[] = [];
+  const redraw = atMostEvery(200, () => {
+    drawnMs.push(performance.now() - beganMs);
+    vi.setSystemTime(Date.now() + takesMs);
+    vi.advanceTimersByTime(takesMs);
+  });
+  const beganMs = performance.now();
+  return { drawnMs, redraw };
+}
+
+it("draws once a period, however often it is asked", () => {
+  const { drawnMs, redraw } = drawing(0);
+  for (let i = 0; i < 100; i++) {
+    redraw.ask();
+    vi.advanceTimersByTime(10);
+  }
+  expect(drawnMs).toEqual([200, 400, 600, 800, 1000]);
+});
+
+it("leaves a slow drawing four times its own time", () => {
+  const { drawnMs, redraw } = drawing(100);
+  redraw.ask();
+  vi.advanceTimersByTime(200);
+  redraw.ask();
+  vi.advanceTimersByTime(399);
+  expect(drawnMs).toHaveLength(1);
+  vi.advanceTimersByTime(1);
+  expect(drawnMs).toHaveLength(2);
+});
+
+it("draws no more once it is over", () => {
+  const { drawnMs, redraw } = drawing(0);
+  redraw.ask();
+  redraw.cancel();
+  vi.advanceTimersByTime(1000);
+  expect(drawnMs).toEqual([]);
+});
