@@ -38,7 +38,10 @@ from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.search_index import ALARM, PERSON
+from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.imports import ImportFolder
+from base_station.storage.missing_segments import names_between
+from base_station.storage.segment_index import known_segments_of
 from shared.clock import NS_PER_S, Clock
 from shared.errors import ArchiveError
 from shared.mcap_log import (
@@ -69,6 +72,10 @@ class CopyResult:
     damage: tuple[str, ...]  # unreadable parts of the station's log
 
 
+class _LogGoneError(ArchiveError):
+    """A copy cannot be made again; what the archive has must not be replaced by less."""
+
+
 class ArchiveCopier:
     def __init__(
         self,
@@ -94,9 +101,15 @@ class ArchiveCopier:
         Raises ArchiveError: finished copies are there, and the rest is due still.
         """
         due = self._copies.due(self._archive.address, closed_until_ns(self._clock))
+        kept = []
         for number, (incident, known_ns) in enumerate(due):
-            yield self._copy(incident, known_ns)
+            try:
+                yield self._copy(incident, known_ns)
+            except _LogGoneError as error:
+                kept.append(str(error))
             on_progress((number + 1) / len(due))
+        if kept:
+            raise ArchiveError(". ".join(kept))
 
     def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
         """``known_ns``: station time of the newest that is known of it."""
@@ -109,6 +122,13 @@ class ArchiveCopier:
         if there is not None and self._is_current(there, incident, known_ns):
             self._note(there)
             return CopyResult(incident.incident_id, 0, there.damage)
+        if there is not None and not self._has_log(incident):
+            raise _LogGoneError(
+                f"{incident.incident_id} has newer data than its copy in {self._archive.address}, "
+                "or a person was forgotten since, and parts of its log are not here any more: the "
+                "copy stays as it is. Bring the missing segments back into the log, or remove the "
+                "copy where nobody may keep it"
+            )
         with TemporaryDirectory(prefix="muster-archive-") as scratch:
             entry = self._pack(incident, known_ns, Path(scratch))
             if there is not None:  # a copy that is cut short from here on does not count
@@ -127,6 +147,14 @@ class ArchiveCopier:
             and entry.people == here
             and not any(defect_of(self._archive, entry, one) for one in entry.files)
         )
+
+    def _has_log(self, incident: IncidentRow) -> bool:
+        """True if all segments of its time are here; where the database knows of none, a record."""
+        from_ns, until_ns = incident.opened_ns, incident.closed_ns or FOREVER_NS
+        known = known_segments_of(Records(self._store, self._clock))
+        if there_were := names_between(known, from_ns, until_ns):
+            return there_were <= self._log.segment_names
+        return any(True for _ in self._log.records(from_ns, until_ns))
 
     def _note(self, entry: CatalogueEntry) -> None:
         self._copies.note(

@@ -17,7 +17,7 @@ from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import FOREVER_NS
-from base_station.storage.missing_segments import KnownSegment
+from base_station.storage.missing_segments import KnownSegment, names_between
 from shared.clock import NS_PER_S
 from shared.errors import ArchiveError
 from shared.mcap_log import SegmentInfo
@@ -95,11 +95,7 @@ class ArchivedLogs:
     def _is_here(self, from_ns: int, until_ns: int) -> bool:
         """All segments that have something of the time; where the database knows of none, one."""
         here = {one.path.name: one for one in self.segments()}
-        there_were = {
-            one.name
-            for one in self.known()
-            if one.messages and one.first_ns <= until_ns and one.last_ns >= from_ns
-        }
+        there_were = names_between(self.known(), from_ns, until_ns)
         if there_were:
             return there_were <= here.keys()
         return any(one.start_ns <= until_ns and one.end_ns >= from_ns for one in here.values())

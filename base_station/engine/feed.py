@@ -174,6 +174,11 @@ class LogFeed:
         """Of its segments; empty: of an earlier version."""
         return log_id_of(segment_paths(self._folder))
 
+    @property
+    def segment_names(self) -> set[str]:
+        """File names of its segments."""
+        return {path.name for path in segment_paths(self._folder)}
+
     def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
         """The same log, with another callback for damage."""
         return LogFeed(self._folder, self._flush, on_damage)

@@ -4,7 +4,7 @@ what the database knows of them.  Pure.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -24,6 +24,15 @@ class KnownSegment:
     last_ns: int
     messages: int
     log_id: str = ""  # of the log; empty: an earlier version wrote it
+
+
+def names_between(known: Iterable[KnownSegment], from_ns: int, until_ns: int) -> set[str]:
+    """Names of segments with messages between two station times."""
+    return {
+        one.name
+        for one in known
+        if one.messages and one.first_ns <= until_ns and one.last_ns >= from_ns
+    }
 
 
 @dataclass(frozen=True, slots=True)

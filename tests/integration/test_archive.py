@@ -32,9 +32,10 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
 from base_station.storage.db.window import EVER
+from base_station.storage.segment_index import segment_row
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import ArchiveError, ConfigError, UserError
-from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
+from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, segment_paths
 from shared.messages import EventKind
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetPlan
 from tests.golden.test_recorded_console import people, shown_at
@@ -209,6 +210,35 @@ def test_a_bucket_without_rights_is_named_and_takes_nothing(
     assert "make the bucket" in refusal("archive", "list", "s3://no-such-bucket/x")
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://192.0.2.1:1")
     assert "192.0.2.1" in refusal("archive", "list", address), "names of people are encrypted"
+
+
+def note_segments(store: Store, log: Path) -> None:
+    """As a station does when it begins a segment."""
+    rows = []
+    for path in segment_paths(log):
+        with SegmentReader(path) as segment:
+            rows.append(segment_row(segment.info()))
+    Records(store, SystemClock()).put_segments(rows)
+
+
+@pytest.mark.slow
+def test_a_copy_is_not_replaced_by_less_where_the_log_is_gone(data: Path, tmp_path: Path) -> None:
+    archive = tmp_path / "archive"
+    succeeded("archive", "copy", archive, "--data", data)
+    before = {path: path.read_bytes() for path in (archive / "i1").iterdir()}
+    with Store(data / "station.sqlite") as store:
+        note_segments(store, data / "log")
+        Roster(store, SystemClock()).change_person("ada0", "Ada Changed", "", "")
+        with store.write() as session:
+            for table in ("archived_incidents", "archived_objects", "archived_ranges"):
+                session.connection().exec_driver_sql(f"DELETE FROM {table}")
+    segment_paths(data / "log")[1].unlink()
+    refused = refusal("archive", "copy", archive, "--data", data)
+    assert "i1 has newer data than its copy" in refused
+    assert "i2" not in refused
+    assert {path: path.read_bytes() for path in before} == before
+    with Store(data / "station.sqlite") as store:
+        assert ArchivedCopies(store).files("i2"), "the others are copied all the same"
 
 
 @pytest.mark.slow
