@@ -31,6 +31,14 @@ settings.load_profile("muster")
 settings.register_profile("quick", deadline=None, max_examples=20)  # ./muster test --quick
 
 
+@pytest.fixture(autouse=True)
+def usual_umask() -> Iterator[None]:
+    """Commands that run in this process set another one for the rest of it."""
+    before = os.umask(0o022)
+    yield
+    os.umask(before)
+
+
 def pytest_collection() -> None:
     """Leave the garbage for later: all that is loaded stays, and a fifth of the time goes to it."""
     gc.disable()

@@ -19,13 +19,14 @@ from base_station.cli import app
 from base_station.core.person_references import reference_to
 from base_station.replay.incident_file import read_incident_file
 from base_station.storage.db.known_people import KnownPerson
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
 from shared.channels import OPERATOR
 from shared.clock import SystemClock
 from shared.codec import decode
 from shared.errors import UserError
-from shared.mcap_log import SegmentWriter
+from shared.mcap_log import SegmentWriter, byte_ranges_of
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.pins import SetPin
 from shared.messages.station import (
@@ -182,8 +183,11 @@ def test_a_damaged_log_is_exported_as_far_as_it_is_readable_and_names_the_damage
     copy, out = tmp_path / "copy", tmp_path / "out.mcap"
     shutil.copytree(data, copy)
     segment = max((copy / "log").glob("*.mcap"))
+    with Store(copy / "station.sqlite") as store:
+        opened_ns = Records(store, SystemClock()).require_incident("i2").opened_ns
+    (chunk, *_) = (one for one in byte_ranges_of(segment).chunks if one.from_ns > opened_ns)
     content = bytearray(segment.read_bytes())
-    content[len(content) // 2] ^= 0xFF
+    content[(chunk.offset + chunk.end) // 2] ^= 0xFF
     segment.write_bytes(content)
     result = muster("export", "i2", str(out), "--data", str(copy))
     assert result.exit_code == 0, result.output
