@@ -2,12 +2,13 @@ import { useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { t } from "../language/translate";
 import type { Picture } from "../live/picture";
-import { AXES, type AxisChoice } from "../section/axis";
+import { AXES } from "../section/axis";
 import type { DrawnSection } from "../section/drawing";
 import { followSection, NARROW_PX, type Window } from "../section/follow";
 import { axis } from "../section/shown";
 import { selectedUnit } from "../uiState";
 import { SectionGround } from "./SectionGround";
+import { Choice } from "./Choice";
 import { NotLocated, OpenMark, SectionFloor } from "./SectionFloor";
 import { SectionView } from "./SectionView";
 
@@ -58,7 +59,12 @@ export function SideSection({ picture }: { picture: Picture }) {
         <div class="section-ends">
           <span>◂ {section.left}</span>
           <div class="section-choices">
-            <AxisChooser />
+            <Choice
+              label={t("section.axis")}
+              choices={AXES}
+              chosen={axis}
+              textOf={(one) => t(`section.axis_${one}`)}
+            />
             <SectionView />
           </div>
           <span>{section.right} ▸</span>
@@ -68,25 +74,6 @@ export function SideSection({ picture }: { picture: Picture }) {
       <OpenMark floors={section?.floors ?? []} open={open} />
       <NotLocated picture={picture} />
     </section>
-  );
-}
-
-function AxisChooser() {
-  return (
-    <label>
-      <span>{t("section.axis")}</span>
-      <select
-        aria-label={t("section.axis")}
-        value={axis.value}
-        onChange={(event) => (axis.value = event.currentTarget.value as AxisChoice)}
-      >
-        {AXES.map((one) => (
-          <option key={one} value={one}>
-            {t(`section.axis_${one}`)}
-          </option>
-        ))}
-      </select>
-    </label>
   );
 }
 

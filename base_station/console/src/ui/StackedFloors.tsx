@@ -3,9 +3,10 @@ import { useEffect, useRef } from "preact/hooks";
 import { t } from "../language/translate";
 import type { Picture } from "../live/picture";
 import type { Window } from "../section/follow";
-import { SPREADS, spread, type Spread } from "../section/shown";
+import { SPREADS, spread } from "../section/shown";
 import type { DrawnStack } from "../stack/drawing";
 import type { StackView } from "../stack/follow";
+import { Choice } from "./Choice";
 import { NotLocated, OpenMark, SectionFloor } from "./SectionFloor";
 import { Bar } from "./SectionGround";
 import { SectionView } from "./SectionView";
@@ -86,7 +87,12 @@ export function StackedFloors({ picture }: { picture: Picture }) {
           {t("plan_view.fit")}
         </button>
         <div class="section-choices">
-          <SpreadChooser />
+          <Choice
+            label={t("stack.spread")}
+            choices={SPREADS}
+            chosen={spread}
+            textOf={(factor) => t("stack.spread_by", { factor })}
+          />
           <SectionView />
         </div>
         <p class="quiet">{t("stack.legend")}</p>
@@ -115,23 +121,4 @@ function pressed(event: KeyboardEvent, stack: StackView): void {
   if (action === undefined) return;
   event.preventDefault();
   action();
-}
-
-function SpreadChooser() {
-  return (
-    <label>
-      <span>{t("stack.spread")}</span>
-      <select
-        aria-label={t("stack.spread")}
-        value={spread.value}
-        onChange={(event) => (spread.value = event.currentTarget.value as Spread)}
-      >
-        {SPREADS.map((factor) => (
-          <option key={factor} value={factor}>
-            {t("stack.spread_by", { factor })}
-          </option>
-        ))}
-      </select>
-    </label>
-  );
 }
