@@ -19,7 +19,7 @@ _NORTHWARDS_M = 100.0  # over which the grid's north is compared with true north
 
 
 class ModelPlace(NamedTuple):
-    """Of the plan's origin; the rotation is the true heading of the plan's north axis."""
+    """Place of the plan's origin; the rotation is the true heading of the plan's north axis."""
 
     lat_deg: float
     lon_deg: float

@@ -358,7 +358,7 @@ def is_answered(browser: Browser, path: str) -> bool:
 
 
 def addresses_about_i1(browser: Browser) -> dict[str, str]:
-    """What is made of the log, by name."""
+    """Addresses of all that is made of the log, by name."""
     (i1,) = (one for one in browser.call("GET", "/incidents") if one["incident_id"] == "i1")
     during = f"from_ms={i1['opened_ms']}&until_ms={i1['closed_ms']}"
     alarms = browser.call("GET", "/alarms?from_ms=0")
@@ -382,7 +382,7 @@ def asked_about_i1(browser: Browser) -> dict[str, str]:
 
 
 def forget_results(data: Path) -> None:
-    """Of post-processing, which is done once."""
+    """Remove results of post-processing, so that it is done again."""
     with Store(data / "station.sqlite") as store, store.write() as session:
         for table in ("smoothed_incidents", "incident_trails", "looked_back"):
             session.connection().exec_driver_sql(f"DELETE FROM {table}")

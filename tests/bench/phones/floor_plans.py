@@ -27,7 +27,7 @@ _Ring = list[list[float]]  # (east_m, north_m) of the floor's frame
 
 
 class _Size(msgspec.Struct):
-    """What is used of ``floor.json``."""
+    """The fields of ``floor.json`` that are read."""
 
     width_m: float
     height_m: float

@@ -45,7 +45,7 @@ LIVE, AFTERWARDS = "live", "afterwards"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PublishedPhone:
-    """What a unit publishes of one walk, and the waypoints."""
+    """Messages that a unit publishes of one walk, and the waypoints."""
 
     name: str  # floor/trial
     positions: list[Position]

@@ -68,7 +68,7 @@ def track_simulated(walk: str, tracker: str) -> tuple[TrackBatch, RecordedTruth]
 
 
 class _Sensed(NamedTuple):
-    """What the sensor of a walk gives, calibrated or not."""
+    """Samples of the sensor of a walk, calibrated or not."""
 
     simulation: Simulation
     description: SensorDescription

@@ -100,7 +100,7 @@ FAULTS = ("no usable inertial sample for 1 s", "the journal cannot be written: t
 
 
 def two_faults() -> wire.Snapshot:
-    """Of one unit, whose wearer is well."""
+    """Two faults of one unit, whose wearer is well."""
     units = [unit(index) for index in range(5)]
     alarms = []
     for number, fault in enumerate(FAULTS):

@@ -212,7 +212,7 @@ def one_word() -> wire.Snapshot:
 
 
 def stored() -> wire.Snapshot:
-    """What a station shows of its tables while it reads its log after a crash."""
+    """Picture from the tables of a station while it reads its log after a crash."""
     shown = bad_minute()
     return msgspec.structs.replace(shown, health=msgspec.structs.replace(HEALTH, reading=0.42))
 

@@ -1,8 +1,7 @@
 /** The floors of a plan above each other, for a drawing in three dimensions.  Pure. */
 import type { Polygon } from "geojson";
 import { placesOf } from "../section/axis";
-import type { Level } from "../section/levels";
-import { storeyHeightM } from "../section/levels";
+import { storeyHeightM, type Level } from "../section/levels";
 import type { Plan } from "../wire";
 
 /** Metres to the east and north. */
@@ -47,9 +46,8 @@ export function stackedBuilding(
   const [eastM, northM] = [side(0), side(1)] as const;
   const ground = rectangle(eastM, northM);
   const floors = levels.map((level) => stackedFloor(plan, level, ground));
-  const storeyM = storeyHeightM(levels);
   const low = levels[0]?.heightM ?? 0;
-  const high = (levels.at(-1)?.heightM ?? 0) + storeyM;
+  const high = (levels.at(-1)?.heightM ?? 0) + storeyHeightM(levels);
   return {
     floors,
     edges: floors.flatMap((one, i) => stairEdges(one, floors[i + 1])),
@@ -71,8 +69,8 @@ export function cornersOf({ floors, bounds }: StackedBuilding): Place3[] {
 
 function stackedFloor(plan: Plan | null, { floor, heightM, expected }: Level, ground: Corner[]): StackedFloor {
   const shapes = (plan?.features ?? []).filter(({ properties }) => properties?.["floor"] === floor);
-  const of = (...kinds: unknown[]) => shapes.filter(({ properties }) => kinds.includes(properties?.["kind"]));
-  const areas = (...kinds: unknown[]) => of(...kinds).flatMap(({ geometry }) => polygons(geometry));
+  const of = (kind: string) => shapes.filter(({ properties }) => properties?.["kind"] === kind);
+  const areas = (kind: string) => of(kind).flatMap(({ geometry }) => polygons(geometry));
   const doors = of("door").flatMap(({ geometry }) => linesOf(geometry));
   const slabs = [areas("outline"), areas("room"), [[ground]]].find((some) => some.length > 0) ?? [];
   const lines = shapes
@@ -113,6 +111,7 @@ function stairEdges({ stairs, heightM }: StackedFloor, above: StackedFloor | und
   );
 }
 
+/** From the least to the greatest coordinate on an axis, 0 for east and 1 for north, with room beside. */
 function sideOf(places: readonly Corner[], axis: 0 | 1, besideM: number, leastM: number): [number, number] {
   let [from, to] = [Infinity, -Infinity];
   for (const place of places) {

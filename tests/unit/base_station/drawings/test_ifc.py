@@ -66,7 +66,7 @@ def test_storeys_are_floors_in_metres_whatever_the_schema_and_the_unit(
 
 
 def crossed(draft: Draft, begin: tuple[float, float], end: tuple[float, float], floor: int) -> bool:
-    """Whether a wall stands between two places on one axis."""
+    """True if a wall stands between two places on one axis."""
     for wall in shapes(draft, "wall", floor):
         points = line(wall)
         for (x0, y0), (x1, y1) in pairwise(points):
