@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 import threading
+from collections import deque
 from queue import SimpleQueue
 from typing import Self
 
@@ -28,6 +29,7 @@ from shared.messages import (
 from tests.rig import message_factory
 
 STEP_S = 0.2
+REPEATED = 10
 SPEED_MPS = 1.0
 CLOCK_AHEAD_S = -75.0
 SENSORS = (
@@ -42,7 +44,9 @@ class Wearable:
     def __init__(self, unit_id: str, station: str) -> None:
         self._bus = ZenohBus(UnitEndpoint((station,)))
         self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
-        self._desk = CommandHandler(self._stamper, lambda _: None)
+        self._handler = CommandHandler(self._stamper, lambda _: None)
+        self._repeated: deque[Message] = deque(maxlen=REPEATED)
+        self._lock = threading.RLock()  # tests and the walk say things by turns
         self._commands: SimpleQueue[bytes] = SimpleQueue()
         self._hearing = self._bus.subscribe(
             COMMAND.key(unit_id), lambda _, payload: self._commands.put(payload)
@@ -62,41 +66,53 @@ class Wearable:
         self._bus.close()
 
     def press_mayday(self) -> None:
-        self._say(UnitEvent(self._stamper.header(), EventKind.MAYDAY))
+        with self._lock:
+            self._send_repeatedly(UnitEvent(self._stamper.header(), EventKind.MAYDAY))
 
     def cancel_mayday(self) -> None:
-        self._say(UnitEvent(self._stamper.header(), EventKind.MAYDAY_CANCELLED))
+        with self._lock:
+            self._send_repeatedly(UnitEvent(self._stamper.header(), EventKind.MAYDAY_CANCELLED))
 
     def acknowledge(self) -> None:
-        for reply in self._desk.acknowledge():
-            self._say(reply)
+        with self._lock:
+            for reply in self._handler.acknowledge():
+                self._send_repeatedly(reply)
 
     def describe(self, *outputs: str) -> None:
         """Say what sensors it has, and which outputs to notify its wearer with."""
-        header = self._stamper.header()
-        self._say(
-            message_factory.description(
-                header, outputs=outputs, tracker="foot_and_trunk", sensors=SENSORS
+        with self._lock:
+            header = self._stamper.header()
+            self._say(
+                message_factory.description(
+                    header, outputs=outputs, tracker="foot_and_trunk", sensors=SENSORS
+                )
             )
-        )
 
     def notify(self, signal: str = "") -> None:
         """An output has run for the command that came last."""
-        reply = self._desk.note_notified(self._last_command_id, signal)
-        assert reply is not None
-        self._say(reply)
+        with self._lock:
+            reply = self._handler.note_notified(self._last_command_id, signal)
+            assert reply is not None
+            self._send_repeatedly(reply)
 
     def _walk(self) -> None:
         walked_m, steps = 0.0, 0
         while not self._ended.wait(STEP_S):
             walked_m += SPEED_MPS * STEP_S
-            self._take_commands()
-            self._say(self._position(walked_m))
-            if steps % 5 == 0:
-                self._say(self._status(steps))
-                self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
-                self._say(Heartbeat(self._stamper.header(), 1, 1, CLOCK_AHEAD_S, clock_std_s=0.003))
+            with self._lock:
+                self._take_commands()
+                self._say(self._position(walked_m))
+                if steps % 5 == 0:
+                    self._send_every_second(steps)
             steps += 1
+
+    def _send_every_second(self, steps: int) -> None:
+        self._say(self._status(steps))
+        self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
+        self._say(Heartbeat(self._stamper.header(), 1, 1, CLOCK_AHEAD_S, clock_std_s=0.003))
+        # The bus may drop a message; it has no journal from which the station could fetch it.
+        for message in self._repeated:
+            self._say(message)
 
     def _take_commands(self) -> None:
         while not self._commands.empty():
@@ -105,7 +121,11 @@ class Wearable:
             if command.kind is CommandKind.TEXT and command.command_id != self._last_command_id:
                 self.texts.append(command.text)
             self._last_command_id = command.command_id
-            self._say(self._desk.take(command))
+            self._send_repeatedly(self._handler.take(command))
+
+    def _send_repeatedly(self, message: Message) -> None:
+        self._repeated.append(message)
+        self._say(message)
 
     def _say(self, message: Message) -> None:
         channel = channel_of(message)

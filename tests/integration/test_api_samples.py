@@ -59,11 +59,13 @@ def delimited(messages: Sequence[Message]) -> bytes:
 @pytest.fixture
 async def node(station: DeskStation, browser: httpx.AsyncClient) -> httpx.AsyncClient:
     """A client with the token of the registered unit."""
-    await browser.post("/units", json={"unit_id": U})
+    registered = await browser.post("/units", json={"unit_id": U})
+    assert registered.status_code == 201, registered.text
     async with station.client(Role.ADMINISTRATOR) as administrator:
-        made = (await administrator.post(TOKENS, json={})).json()
+        added = await administrator.post(TOKENS, json={})
+    assert added.status_code == 201, added.text
     client = station.client()
-    client.headers["authorization"] = f"Bearer {made['token']}"
+    client.headers["authorization"] = f"Bearer {added.json()['token']}"
     return client
 
 

@@ -65,18 +65,18 @@ def test_the_quick_tests_are_two_for_each_core_and_leave_out_slow_ones(
 
 
 @pytest.mark.parametrize(
-    ("failures", "alone", "ended"), [(1, 0, 0), (3, 0, 0), (1, 1, 1), (4, 0, 1)]
+    ("modules", "alone", "ended"), [(1, 0, 0), (3, 0, 0), (1, 1, 1), (4, 0, 1)]
 )
-def test_a_few_tests_that_failed_are_run_once_more_and_named(
+def test_a_few_modules_with_failures_are_run_once_more_and_their_failures_named(
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
-    failures: int,
+    modules: int,
     alone: int,
     ended: int,
 ) -> None:
     script = load_script()
-    names = [f"tests/test_one.py::test_{number}" for number in range(failures)]
+    names = [f"tests/test_{one}.py::test_{two}" for one in range(modules) for two in range(5)]
     (tmp_path / "lastfailed").write_text(json.dumps(dict.fromkeys(names, True)))
     monkeypatch.setattr(script, "LAST_FAILED", tmp_path / "lastfailed")
     ran: list[tuple[str, ...]] = []
@@ -87,6 +87,7 @@ def test_a_few_tests_that_failed_are_run_once_more_and_named(
 
     monkeypatch.setattr(script, "run_pytest", run_pytest)
     assert script.retry_failures() == ended
-    assert len(ran) == (failures <= script.RETRIES_MAX)
+    retried = [tuple(f"tests/test_{one}.py" for one in range(modules))]
+    assert ran == (retried if modules <= script.RETRIED_MODULES_MAX else [])
     printed = capsys.readouterr().out
     assert all((name in printed) == (ended == 0) for name in names)
