@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from base_station.api.field_descriptions import FIELDS, PARAMETERS
+from base_station.api.field_descriptions import FIELDS, SUBJECTS
+from base_station.api.field_descriptions.parameters import PARAMETERS
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
 
@@ -42,7 +43,7 @@ def parameters(document: Document) -> Iterator[tuple[str, Document]]:
 
 
 def test_every_field_and_every_parameter_is_described(document: Document) -> None:
-    """A new one is described in ``base_station/api/field_descriptions.py``."""
+    """A new one is described in its subject's module of ``base_station/api/field_descriptions``."""
     bare = [f"{name}.{field}" for name, field, about in fields(document) if not has_text(about)]
     bare += [f"{of}({one['name']})" for of, one in parameters(document) if not has_text(one)]
     assert bare == []
@@ -60,6 +61,11 @@ def test_nothing_is_described_that_is_not_there(document: Document) -> None:
     }
     assert set(FIELDS) - answered - asked == set()
     assert set(PARAMETERS) - asked == set()
+
+
+def test_a_field_is_described_by_one_subject() -> None:
+    described = [field for subject in SUBJECTS for field in subject.FIELDS]
+    assert sorted(described) == sorted(FIELDS)
 
 
 def test_names_are_of_one_thing(document: Document) -> None:
