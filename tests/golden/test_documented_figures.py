@@ -88,7 +88,7 @@ def test_every_registered_tracker_has_a_column_and_every_row_is_known():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_figures_of_recorded_walks_are_those_of_a_run(walks, name):
+def test_figures_of_recorded_walks_are_reproduced(walks, name):
     scores = recorded(walks, name)
     summary = summarise(scores)
     for label, count, row in beside(RECORDED):
@@ -101,7 +101,7 @@ def test_figures_of_recorded_walks_are_those_of_a_run(walks, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_figures_of_simulated_walks_are_those_of_a_run(name):
+def test_figures_of_simulated_walks_are_reproduced(name):
     for label, _, row in beside(SIMULATED):
         field, statistic = statistic_of(row["figure"])
         scores = simulated(name, SIMULATED[label])
@@ -117,7 +117,7 @@ def test_every_tracker_worn_elsewhere_has_a_column_and_every_route_a_row():
 
 
 @pytest.mark.parametrize("name", ELSEWHERE)
-def test_figures_of_documented_routes_are_those_of_a_run(name):
+def test_figures_of_documented_routes_are_reproduced(name):
     for row in read_table(PAGE, *ROUTE):
         scores = simulated(name, row["route"].strip("`"))
         (stated,) = figures(row[f"`{name}`"])
@@ -125,7 +125,7 @@ def test_figures_of_documented_routes_are_those_of_a_run(name):
         assert stated.holds(measured), f"{row['route']}: {stated.value}, {measured:.3f}"
 
 
-def test_figures_of_hard_walks_are_those_of_a_run(hard_walks):
+def test_figures_of_hard_walks_are_reproduced(hard_walks):
     scores = {(one.dataset, one.trial): one.score for one in recorded(hard_walks, NAMES[0])}
     rows = read_table(PAGE, "hard trial")
     assert len(rows) == len(scores)

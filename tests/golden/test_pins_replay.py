@@ -45,7 +45,7 @@ def logged(walk: Walk) -> list[Record]:
     return records
 
 
-def test_a_replay_of_pins_decides_the_same() -> None:
+def test_replay_of_pins_makes_the_same_decisions() -> None:
     walk = reported()
     state = walk.script.pipeline.state
     assert {pin_id: one.state for pin_id, one in state.site.pin_verdicts.items()}[

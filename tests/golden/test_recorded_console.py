@@ -142,7 +142,7 @@ def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
 
 
 @pytest.mark.parametrize("script", [eventful, pinned], ids=["eventful", "pinned"])
-def test_what_is_played_is_what_deciding_again_shows(script: Any, tmp_path: Path) -> None:
+def test_recorded_console_equals_a_recomputed_replay(script: Any, tmp_path: Path) -> None:
     reported: Script = script()
     records = with_console(reported.records, make_pipeline())
     times = [t_ns for t_ns, key, _ in records if key in {DELTA_TOPIC, SNAPSHOT_TOPIC}]
@@ -166,7 +166,7 @@ def undisturbed(station: LiveStation) -> tuple[int, Snapshot]:
             return done.t_ns, snapshot
 
 
-def test_what_is_played_is_what_was_live(tmp_path: Path) -> None:
+def test_recorded_console_equals_the_live_console(tmp_path: Path) -> None:
     """Through bus, threads and log of a real engine."""
     reported = incident()
     actions = [decode(OPERATOR, one[2]) for one in reported.records if one[1].endswith("/operator")]

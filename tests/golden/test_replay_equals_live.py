@@ -180,7 +180,7 @@ def logged(script: Script) -> list[Record]:
     return records
 
 
-def test_the_incident_is_worth_replaying(reported: Script) -> None:
+def test_scripted_incident_covers_the_alarm_rules(reported: Script) -> None:
     rules = {alarm.rule for alarm in reported.alarms}
     assert rules >= {
         "mayday", "no-motion", "heat", "link-lost", "tracker-degraded", "unknown-unit",
@@ -206,7 +206,7 @@ def test_the_incident_is_worth_replaying(reported: Script) -> None:
     }  # fmt: skip
 
 
-def test_a_replay_shows_of_each_command_what_was_shown_live(reported: Script) -> None:
+def test_replay_shows_the_command_states_of_the_live_run(reported: Script) -> None:
     again = Script(make_pipeline())
     for t_ns, key, payload in reported.records:
         again.now_s = (t_ns - reported.records[0][0]) / 1e9
@@ -222,13 +222,13 @@ def test_a_replay_shows_of_each_command_what_was_shown_live(reported: Script) ->
     assert replayed == live
 
 
-def test_a_replay_of_the_log_decides_the_same(reported: Script) -> None:
+def test_replay_of_the_log_makes_the_same_decisions(reported: Script) -> None:
     records = logged(reported)
     assert any(is_decision(key) for _, key, _ in records)
     assert list(compare(records, make_pipeline())) == []
 
 
-def test_a_changed_rule_is_noticed(reported: Script) -> None:
+def test_changed_rule_is_detected_by_the_replay(reported: Script) -> None:
     fewer = StationPipeline(ALARMS[1:], FUSERS[0])
     differences = list(compare(logged(reported), fewer))
     assert differences
@@ -236,7 +236,7 @@ def test_a_changed_rule_is_noticed(reported: Script) -> None:
 
 
 @pytest.mark.parametrize("part", [0.1, 0.37, 0.8])
-def test_a_checkpoint_goes_on_with_the_very_same_decisions(reported: Script, part: float) -> None:
+def test_checkpoint_continues_with_the_same_decisions(reported: Script, part: float) -> None:
     cut = round(len(reported.records) * part)
     straight, first = Script(make_pipeline()), Script(make_pipeline())
     for t_ns, key, payload in reported.records[:cut]:
@@ -256,7 +256,7 @@ def test_a_checkpoint_goes_on_with_the_very_same_decisions(reported: Script, par
     assert second.pipeline.checkpoint() == straight.pipeline.checkpoint()
 
 
-def test_what_ran_live_replays_the_same_through_bus_threads_and_log(
+def test_live_run_through_bus_threads_and_log_replays_identically(
     tmp_path: Path, reported: Script
 ) -> None:
     """The real drive on the real clock: whatever time it was, the log tells it again."""

@@ -16,7 +16,7 @@ from tests.golden.tracker_figures import (
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_trajectories_and_figures_change_only_on_purpose(name, hard_walks):
+def test_trajectories_and_figures_equal_the_golden_files(name, hard_walks):
     expected = read_golden(name)
     assert expected, f"{golden_path(name)} is missing: python -m tests.golden.tracker_figures"
     measured = measure(hard_walks.parent, name)

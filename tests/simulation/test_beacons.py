@@ -91,7 +91,7 @@ def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, stated: Sa
     assert trail_off_m(simulation, pinned) < 0.7 * trail_off_m(simulation, plain)
 
 
-def test_beacons_that_nobody_placed_wait_and_count_once_they_are(
+def test_unplaced_beacons_wait_and_are_used_once_placed(
     simulation: Simulation, stated: Said
 ) -> None:
     script = reported(simulation, stated, with_beacons=False)
@@ -103,7 +103,7 @@ def test_beacons_that_nobody_placed_wait_and_count_once_they_are(
     assert {one.state for one in state.site.pin_verdicts.values()} == {"waiting"}
 
 
-def test_a_seed_receives_the_same_again(simulation: Simulation) -> None:
+def test_simulation_of_a_seed_is_reproducible(simulation: Simulation) -> None:
     received = []
     for _ in range(2):
         batches = islice(simulation.batches(1.0), 30)

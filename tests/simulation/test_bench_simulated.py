@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.bench.tracker.simulated_walks import score_simulated, simulated_walks
 
 
-def test_every_walk_comes_with_every_seed():
+def test_every_walk_is_simulated_with_every_seed():
     walks = simulated_walks("eskf")
     assert len(set(walks)) == len(walks) == 24
 

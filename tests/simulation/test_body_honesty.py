@@ -22,7 +22,7 @@ _TRUTH_S = 0.5
 @pytest.mark.parametrize(
     ("sensors", "aids"), [(CONSUMER_SENSORS, ()), (UNCALIBRATED_SENSORS, ("mag_ut",))]
 )
-def test_ten_minutes_of_search_are_stated(worn_on, sensors, aids):
+def test_stated_uncertainty_covers_ten_minutes_of_search(worn_on, sensors, aids):
     """Iron beside the compass, gains of the gyroscope, and the cone of a thigh turn it."""
     scores, inside = [], []
     for seed in SEEDS:

@@ -72,7 +72,7 @@ class Person:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_who_only_does_what_is_stated_is_done_in_minutes(seed):
+def test_guided_calibration_is_complete_in_five_minutes(seed):
     person = Person(seed)
     batches = person.batches()
     steps: list[Step] = [StillStep(), PosesStep(), TurningStep()]
@@ -86,7 +86,7 @@ def test_who_only_does_what_is_stated_is_done_in_minutes(seed):
     assert None not in (calibration.accelerometer, calibration.gyroscope, calibration.magnetometer)
 
 
-def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tmp_path):
+def test_unit_is_calibrated_over_the_bus_from_its_raw_samples(tmp_path):
     """The live source of a station: whatever driver the unit has."""
     router = MemoryRouter()
     unit = router.attach_unit()

@@ -32,7 +32,7 @@ def together(scores: list[Scores], begin_s: float, end_s: float) -> Floats:
 
 
 @pytest.mark.parametrize(("fix_std_m", "worst_m"), [(1.5, 25.0), (3.0, 50.0)])
-def test_the_heading_is_found_all_the_way_round_within_a_walk_of_25_m(
+def test_any_initial_heading_is_found_within_a_walk_of_25_m(
     kind: FuserKind, fix_std_m: float, worst_m: float
 ) -> None:
     """By a receiver as data sheets have it, always; by one of twice its error, mostly."""
@@ -97,7 +97,7 @@ def test_without_gps_a_known_start_is_enough(kind: FuserKind) -> None:
     assert np.mean(together(scores, 1.0, 200.0) < 5.991) > 0.9
 
 
-def test_a_start_without_a_heading_says_how_far_it_may_be(kind: FuserKind) -> None:
+def test_start_without_heading_has_full_heading_uncertainty(kind: FuserKind) -> None:
     scores = []
     for walk, receiver in walks(60.0):
         fuser = kind.new()
@@ -111,7 +111,7 @@ def test_a_start_without_a_heading_says_how_far_it_may_be(kind: FuserKind) -> No
     assert np.mean(together(scores, 1.0, 60.0) < 5.991) > 0.95
 
 
-def test_nothing_known_is_shown_about_the_unit_s_own_start(kind: FuserKind) -> None:
+def test_position_without_references_is_relative_to_the_units_start(kind: FuserKind) -> None:
     walk = Walk.wander(np.random.default_rng(0), 30.0)
     fuser = kind.new()
     for index in range(len(walk)):
@@ -124,7 +124,7 @@ def test_nothing_known_is_shown_about_the_unit_s_own_start(kind: FuserKind) -> N
     assert "start" in estimate.quality_reason
 
 
-def test_standing_still_costs_nothing(kind: FuserKind) -> None:
+def test_standing_still_adds_no_uncertainty(kind: FuserKind) -> None:
     walk = Walk.wander(np.random.default_rng(0), 120.0)
     fuser = kind.new()
     run(fuser, walk, Receiver(np.random.default_rng(1)), (0.0, 120.0))
@@ -140,7 +140,7 @@ def test_standing_still_costs_nothing(kind: FuserKind) -> None:
     assert after.since_gps_s == pytest.approx(600.0, abs=1.0)
 
 
-def test_confident_rubbish_indoors_moves_nobody(kind: FuserKind) -> None:
+def test_wrong_confident_fixes_indoors_are_rejected(kind: FuserKind) -> None:
     """Two minutes in, the receiver says 40 m further east, wandering about, and is sure of it."""
     for seed in range(10):
         rng = np.random.default_rng(seed)
@@ -163,7 +163,7 @@ def test_confident_rubbish_indoors_moves_nobody(kind: FuserKind) -> None:
         assert max(scores.error_m[600:]) < 15.0, f"seed {seed}"
 
 
-def test_going_back_outside_closes_the_error_without_losing_the_way(kind: FuserKind) -> None:
+def test_fixes_after_a_stay_indoors_remove_the_error(kind: FuserKind) -> None:
     """Four minutes inside; then fixes again.  At the end all is as if there had been no house."""
     ends = []
     for walk, receiver in walks(400.0)[:8]:
@@ -179,7 +179,7 @@ def test_going_back_outside_closes_the_error_without_losing_the_way(kind: FuserK
     assert np.percentile(ends, 95) < 7.0
 
 
-def test_a_path_that_went_wrong_unseen_is_given_up_for_fixes_that_agree(kind: FuserKind) -> None:
+def test_path_with_an_undetected_turn_is_abandoned_for_consistent_fixes(kind: FuserKind) -> None:
     """Three minutes in the own path turns by 150 degrees at once, and says nothing of it."""
     rng = np.random.default_rng(5)
     walk = Walk.wander(rng, 400.0)
@@ -196,7 +196,7 @@ def test_a_path_that_went_wrong_unseen_is_given_up_for_fixes_that_agree(kind: Fu
     assert np.mean(scores.error_m[-100:]) < 6.0
 
 
-def test_a_receiver_that_is_stuck_is_noticed(kind: FuserKind) -> None:
+def test_stuck_receiver_is_detected(kind: FuserKind) -> None:
     walk = Walk.wander(np.random.default_rng(3), 120.0)
     fuser, receiver = kind.new(), Receiver(np.random.default_rng(1))
     stuck = Receiver(np.random.default_rng(2)).fix(60.0, walk.truth_m[300])
@@ -213,7 +213,7 @@ def test_a_receiver_that_is_stuck_is_noticed(kind: FuserKind) -> None:
     assert {verdict.reason for verdict in verdicts[-10:]} == {"the receiver is stuck"}
 
 
-def test_a_restarted_unit_goes_on_from_where_its_wearer_is(kind: FuserKind) -> None:
+def test_restarted_unit_continues_from_its_last_position(kind: FuserKind) -> None:
     walk = Walk.wander(np.random.default_rng(4), 300.0)
     receiver = Receiver(np.random.default_rng(1))
     fuser = kind.new()

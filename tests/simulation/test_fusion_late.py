@@ -32,7 +32,7 @@ def test_a_late_fix_corrects_as_if_it_had_come_in_time(kind: FuserKind) -> None:
         assert apart_m < 0.5 * math.hypot(one.std_north_m, one.std_east_m)
 
 
-def test_a_fix_of_before_the_path_is_refused_with_a_reason(kind: FuserKind) -> None:
+def test_fix_older_than_the_path_is_rejected_with_a_reason(kind: FuserKind) -> None:
     walk = Walk.wander(np.random.default_rng(0), 300.0)
     fuser, receiver = kind.new(), Receiver(np.random.default_rng(1))
     old = receiver.fix(-60.0, walk.truth_m[5])
@@ -42,7 +42,7 @@ def test_a_fix_of_before_the_path_is_refused_with_a_reason(kind: FuserKind) -> N
     assert verdict.reason == "too old"
 
 
-def test_fixes_out_of_a_journal_count_at_their_own_time(kind: FuserKind) -> None:
+def test_backfilled_fixes_are_applied_at_their_measurement_time(kind: FuserKind) -> None:
     """Two minutes of walk and fixes are only heard of when the unit is inside; then the fixes
     tell where it is now, as far as its own path is right, and no better than that.
     """
@@ -75,7 +75,7 @@ def test_fixes_out_of_a_journal_count_at_their_own_time(kind: FuserKind) -> None
     assert np.mean(np.array(normalised2) < 5.991) > 0.8
 
 
-def test_fixes_of_before_the_newest_one_correct_the_present(kind: FuserKind) -> None:
+def test_late_fixes_of_a_gap_correct_the_current_position(kind: FuserKind) -> None:
     """The fixes of a gap come after newer ones."""
     better = 0
     for walk, receiver in walks(200.0):

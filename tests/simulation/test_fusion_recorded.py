@@ -39,7 +39,7 @@ def test_the_stated_region_holds_the_measured_footprints(
     assert np.mean(scores.held_after) > 0.9
 
 
-def test_together_they_are_better_than_fixes_or_the_last_fix_carried_on(
+def test_fusion_is_better_than_fixes_or_dead_reckoning_alone(
     kind: FuserKind, tracked: list[Tracked]
 ) -> None:
     """The walks are too short for a path carried on from one fix to fall far behind after it."""
@@ -50,7 +50,7 @@ def test_together_they_are_better_than_fixes_or_the_last_fix_carried_on(
     assert np.percentile(scores.after_m["fused"], 95) < 0.5 * np.percentile(alone_m, 95)
 
 
-def test_tracks_are_read_as_the_tracker_writes_them(
+def test_tracks_are_read_in_the_format_of_the_tracker(
     kind: FuserKind, walks: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     trials = walks / "footprints"
@@ -62,7 +62,9 @@ def test_tracks_are_read_as_the_tracker_writes_them(
         print_recorded(kind, trials, tmp_path / "nothing")
 
 
-def test_the_path_goes_on_where_the_fixes_end(kind: FuserKind, tracked: list[Tracked]) -> None:
+def test_path_continues_without_a_jump_after_the_last_fix(
+    kind: FuserKind, tracked: list[Tracked]
+) -> None:
     """No jump at the seam, and the way after it is no worse than the fixes before it were."""
     for number, recorded in enumerate(tracked):
         walk, scores = _fuse(kind, recorded, np.random.default_rng(number))

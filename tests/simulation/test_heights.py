@@ -58,7 +58,7 @@ class Wearer:
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_350_pa_of_weather_in_an_hour_move_nobody_a_floor(sign: float) -> None:
+def test_weather_of_350_pa_in_an_hour_changes_no_floor(sign: float) -> None:
     """Without any reference, and without a plan's storeys to hold on to: 29 m of pressure."""
     wearer, worst_m = Wearer(), 0.0
     for second in range(3600):
@@ -68,7 +68,7 @@ def test_350_pa_of_weather_in_an_hour_move_nobody_a_floor(sign: float) -> None:
     assert worst_m < 1.0
 
 
-def test_a_fan_that_is_started_is_no_stair() -> None:
+def test_started_fan_is_no_stair() -> None:
     for step_pa in (-60.0, -30.0, 30.0, 60.0):
         wearer = Wearer()
         for second in range(300):
@@ -85,7 +85,7 @@ def test_stairs_are_climbed_with_the_fan_on() -> None:
     assert wearer.height.down_m == pytest.approx(-3.2, abs=0.4)
 
 
-def test_on_the_level_inside_people_are_on_a_storey() -> None:
+def test_level_walking_inside_sets_the_height_of_a_storey() -> None:
     height = HeightFilter(Parameters())
     height.reset(-2.8, 0.5)
     height.predict(0.0, 10.0)
@@ -94,7 +94,7 @@ def test_on_the_level_inside_people_are_on_a_storey() -> None:
     assert height.down_m == pytest.approx(-3.2, abs=0.15)
 
 
-def test_half_way_between_two_storeys_neither_is_taken() -> None:
+def test_height_half_way_between_storeys_is_assigned_to_neither() -> None:
     height = HeightFilter(Parameters())
     height.reset(-1.6, 0.5)
     height.predict(0.0, 10.0)
@@ -102,7 +102,7 @@ def test_half_way_between_two_storeys_neither_is_taken() -> None:
     assert height.down_m == pytest.approx(-1.6)
 
 
-def test_the_weather_is_reported_by_anyone_stays_and_nobody_moves_by_joining() -> None:
+def test_weather_is_estimated_by_stationary_units_and_joining_units_move_no_height() -> None:
     weather = Weather()
     for second in range(600):
         rise_m = 0.01 * second
@@ -114,7 +114,7 @@ def test_the_weather_is_reported_by_anyone_stays_and_nobody_moves_by_joining() -
     assert not weather.is_known(700 * NS_PER_S)
 
 
-def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
+def test_reference_barometer_alone_determines_the_weather(position: Position) -> None:
     barometers = Barometers()
     barometers.set_reference("REF", 0.0)
     for second in range(300):
@@ -130,7 +130,7 @@ def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
     assert air.down_m == pytest.approx(first, abs=0.3)
 
 
-def test_a_pressure_that_cannot_be_is_left_alone(position: Position) -> None:
+def test_impossible_pressure_is_ignored(position: Position) -> None:
     for pressure_pa in (None, 0.5, 1e6, math.nan):
         reported = msgspec.structs.replace(position, pressure_pa=pressure_pa)
         assert Barometers().update("FF-01", 0, reported, is_outside=True) is None

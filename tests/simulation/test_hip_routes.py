@@ -12,7 +12,7 @@ SEEDS = range(3)
 
 
 @pytest.mark.parametrize(("route", "way_m"), [("straight-40m", 40.0), ("corridors-124m", 124.0)])
-def test_ways_are_off_by_less_than_the_thesis_has_it(route, way_m):
+def test_distance_error_is_below_the_figure_of_the_thesis(route, way_m):
     """Hettiarachchige Don 2016: 4.3 % where step and heading has 6.0 %."""
     off = []
     for seed in SEEDS:

@@ -29,7 +29,7 @@ SEEDS = range(12)
 INCIDENTS = range(8001, 8007)
 
 
-def test_what_all_learn_of_a_building_holds_each_of_them(kind: FuserKind) -> None:
+def test_shared_building_model_corrects_every_unit(kind: FuserKind) -> None:
     """Over several incidents: the errors of all who learn together are largely one error, so
     one incident says of what is stated hardly more than one person at one moment would.
     """
@@ -46,7 +46,7 @@ def test_what_all_learn_of_a_building_holds_each_of_them(kind: FuserKind) -> Non
     assert np.concatenate(held).mean() > 0.85
 
 
-def test_where_nothing_is_at_right_angles_nothing_is_lost(kind: FuserKind) -> None:
+def test_building_without_right_angles_costs_no_accuracy(kind: FuserKind) -> None:
     """People wander about; for two minutes with fixes, then for three without."""
     with_it, without, held = [], [], []
     for seed in SEEDS:
@@ -73,7 +73,9 @@ def test_where_nothing_is_at_right_angles_nothing_is_lost(kind: FuserKind) -> No
 
 
 @pytest.mark.parametrize("seed", [62014, 91052])
-def test_nobody_is_turned_to_walls_that_they_do_not_follow(kind: FuserKind, seed: int) -> None:
+def test_heading_is_not_turned_to_walls_that_the_path_does_not_follow(
+    kind: FuserKind, seed: int
+) -> None:
     """Incidents in which somebody crosses rooms as often as not, and somebody is long without a
     known heading: legs that fitted a wrong wall led them 10 m astray, and surely.
     """
@@ -87,7 +89,7 @@ def test_nobody_is_turned_to_walls_that_they_do_not_follow(kind: FuserKind, seed
 
 
 @pytest.mark.parametrize("angle_deg", [10.0, 20.0, 30.0, 45.0])
-def test_walls_of_another_building_turn_nobody(kind: FuserKind, angle_deg: float) -> None:
+def test_walls_of_another_building_turn_no_heading(kind: FuserKind, angle_deg: float) -> None:
     """Fixes on the way there told the heading, which is right to the last digit."""
     estimates = list(_through_two_buildings(kind.new(), 60, math.radians(angle_deg)))
     off_rad = [abs(wrap_pi(one.heading_rad)) for one in estimates]
@@ -96,7 +98,9 @@ def test_walls_of_another_building_turn_nobody(kind: FuserKind, angle_deg: float
 
 
 @pytest.mark.parametrize("angle_deg", [30.0, 45.0])
-def test_walls_of_a_wing_leave_open_who_is_right(kind: FuserKind, angle_deg: float) -> None:
+def test_walls_of_a_rotated_wing_increase_the_heading_uncertainty(
+    kind: FuserKind, angle_deg: float
+) -> None:
     """Nothing else tells that it is not the heading that was turned."""
     estimates = list(_through_two_buildings(kind.new(), 0, math.radians(angle_deg)))
     off_rad = [abs(wrap_pi(one.heading_rad)) for one in estimates]
@@ -105,9 +109,7 @@ def test_walls_of_a_wing_leave_open_who_is_right(kind: FuserKind, angle_deg: flo
 
 
 @pytest.mark.parametrize("is_stated", [True, False], ids=["a start is said", "nothing is"])
-def test_who_is_in_a_frame_of_their_own_tells_nothing_of_the_building(
-    kind: FuserKind, is_stated: bool
-) -> None:
+def test_unit_without_a_known_frame_teaches_no_axis(kind: FuserKind, is_stated: bool) -> None:
     """Rooms round and round, and nothing says where the own frame lies."""
     fuser, learnt, place = kind.new(), LearntBuilding(), 0j
     if is_stated:

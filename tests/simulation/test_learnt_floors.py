@@ -99,7 +99,7 @@ def test_floors_are_numbered_from_the_ground_where_people_walk(people: People) -
     assert people.seen() == pytest.approx({0: 0.0, 1: 3.4, 3: 10.2}, abs=0.3)
 
 
-def test_what_one_has_learnt_holds_for_the_other(people: People) -> None:
+def test_learnt_floor_is_shared_with_other_units(people: People) -> None:
     alone = People("FF-02")
     for one in (alone, people):
         one.walk("FF-02", 20)
@@ -108,7 +108,7 @@ def test_what_one_has_learnt_holds_for_the_other(people: People) -> None:
     assert people.sure("FF-02") > alone.sure("FF-02")
 
 
-def test_a_learnt_storey_holds_anyone_comes_back_to_it(people: People) -> None:
+def test_learnt_storey_corrects_a_returning_unit(people: People) -> None:
     """Stairs that are seen a tenth too high, over and over, do not lead away from the floors."""
     for _ in range(4):
         people.climb("FF-01", -3, STOREY_M * 1.05)
@@ -119,28 +119,28 @@ def test_a_learnt_storey_holds_anyone_comes_back_to_it(people: People) -> None:
     assert people.seen()[0] == pytest.approx(0.0, abs=0.5)
 
 
-def test_it_is_learnt_again_without_anyone_is_forgotten(people: People) -> None:
+def test_erased_unit_is_removed_from_the_learnt_floors(people: People) -> None:
     people.walk("FF-02", 20)
     people.script.act(CloseIncident("i1"))
     people.script.act(ForgetWearers("FF-01"))
     assert people.seen() == {0: 0.0}
 
 
-def test_an_incident_begins_without_the_floors_of_the_one_before(people: People) -> None:
+def test_incident_starts_without_learnt_floors_of_the_previous_one(people: People) -> None:
     people.script.act(CloseIncident("i1"))
     people.script.now_s += 10.0
     people.script.act(OpenIncident("i2", "Elm Street"))
     assert people.seen() == {}
 
 
-def test_a_plan_takes_over(people: People) -> None:
+def test_plan_replaces_learnt_floors(people: People) -> None:
     people.script.act(SetPlan(PLAN))
     people.walk("FF-01", 1)
     assert people.floor("FF-01") == 7
     assert people.sure("FF-01") < 1.0
 
 
-def test_what_a_person_says_of_a_floor_numbers_it_until_the_pin_is_removed(
+def test_floor_of_a_pin_numbers_the_storeys_until_the_pin_is_removed(
     people: People,
 ) -> None:
     script = people.script
@@ -153,7 +153,7 @@ def test_what_a_person_says_of_a_floor_numbers_it_until_the_pin_is_removed(
     assert people.floor("FF-01") == 3
 
 
-def test_a_pin_that_contradicts_where_person_was_numbers_no_floors(people: People) -> None:
+def test_conflicting_pin_numbers_no_floors(people: People) -> None:
     script = people.script
     script.act(SetPin("p1", "FF-01", script.t_ns, 0.0, 500.0, 1.0, 2, None, 0.0, ""))
     assert script.pipeline.state.site.pin_verdicts["p1"].state == "conflict"
@@ -161,21 +161,21 @@ def test_a_pin_that_contradicts_where_person_was_numbers_no_floors(people: Peopl
     assert people.floor("FF-01") == 3
 
 
-def test_no_building_has_that_floor(people: People) -> None:
+def test_impossible_floor_of_a_pin_is_refused(people: People) -> None:
     pin = SetPin("p1", "FF-01", people.script.t_ns, 0.0, 0.0, 1.0, 1000, None, 0.0, "")
     (refused,) = people.script.act(pin)
     assert isinstance(refused, Refused)
     assert "no building has a floor 1000" in refused.reason
 
 
-def test_who_begins_upstairs_tells_nothing_of_the_ground(people: People) -> None:
+def test_start_upstairs_is_no_ground_floor(people: People) -> None:
     people.script.act(SetStart("FF-02", 0.0, 0.0, -10.2, 0.0, 0.5, 3.2))
     people.walk("FF-02", 20)
     assert people.floor("FF-02") == 3
     assert people.seen()[0] == pytest.approx(0.0, abs=0.3)
 
 
-def test_of_a_unit_that_nobody_stated_where_it_began_the_floor_is_assumed(people: People) -> None:
+def test_unit_without_a_reported_start_has_an_assumed_floor(people: People) -> None:
     people.walk("FF-02", 20)
     assert people.floor("FF-02") == 0
     assert people.sure("FF-02") < 0.5
@@ -184,7 +184,7 @@ def test_of_a_unit_that_nobody_stated_where_it_began_the_floor_is_assumed(people
     assert people.sure("FF-02") > 0.9
 
 
-def test_buildings_apart_have_floors_of_their_own(people: People) -> None:
+def test_separate_buildings_have_separate_floors(people: People) -> None:
     people.script.act(SetStart("FF-02", 200.0, 0.0, 0.0, 0.0, 0.5, 0.1))
     people.north_m["FF-02"] = 0.0
     people.walk("FF-02", 20)
@@ -198,7 +198,7 @@ def test_buildings_apart_have_floors_of_their_own(people: People) -> None:
     assert people.seen()[1] == pytest.approx(3.4, abs=0.3)
 
 
-def test_heights_move_with_the_frame_and_floors_stay(people: People) -> None:
+def test_change_of_frame_moves_heights_and_keeps_floors(people: People) -> None:
     people.script.gps("FF-01", 52.0, 4.0)
     people.script.act(SetAnchor(52.0, 4.0001, 20.0, 0.3))
     people.walk("FF-01", 1)
@@ -207,7 +207,7 @@ def test_heights_move_with_the_frame_and_floors_stay(people: People) -> None:
     assert people.floor("FF-01") == 3
 
 
-def test_a_replay_and_a_station_that_starts_again_show_the_same_floors(people: People) -> None:
+def test_replay_and_restarted_station_show_the_same_floors(people: People) -> None:
     people.walk("FF-02", 20)
     people.climb("FF-02", 1)
     saved = read_checkpoint(people.script.pipeline.checkpoint())

@@ -72,7 +72,7 @@ def settled(shown: list[FusedPosition], height_m: Floats) -> list[tuple[FusedPos
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_lift_in_the_house_comes_out_on_the_right_floor(seed: int) -> None:
+def test_lift_ride_without_a_plan_ends_on_the_correct_floor(seed: int) -> None:
     """Nobody says how high a storey is."""
     shown, height_m = ridden(f"lift?seed={seed}", with_plan=False)
     floors = settled(shown, height_m)
@@ -82,7 +82,7 @@ def test_a_lift_in_the_house_comes_out_on_the_right_floor(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_lift_up_six_storeys_and_down_by_twos_keeps_to_the_plans_floors(seed: int) -> None:
+def test_lift_rides_end_on_the_floors_of_the_plan(seed: int) -> None:
     floors = settled(*ridden(f"tower?seed={seed}", with_plan=True))
     assert {storey for _, storey in floors} == {0, 2, 4, 6}
     wrong = [one for one, storey in floors if one.floor != storey]
@@ -90,7 +90,7 @@ def test_a_lift_up_six_storeys_and_down_by_twos_keeps_to_the_plans_floors(seed: 
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_heights_of_rides_are_as_sure_as_they_say(seed: int) -> None:
+def test_height_errors_of_rides_agree_with_the_stated_uncertainty(seed: int) -> None:
     shown, height_m = ridden(f"tower?seed={seed}", with_plan=False)
     off = [
         (-one.down_m - true_m) / one.std_down_m for one, true_m in zip(shown, height_m, strict=True)
@@ -99,7 +99,7 @@ def test_heights_of_rides_are_as_sure_as_they_say(seed: int) -> None:
     assert max(one.std_down_m for one in shown) < 1.5
 
 
-def test_while_it_rides_nobody_is_surer_than_the_unit() -> None:
+def test_fused_height_during_a_ride_is_no_surer_than_the_units() -> None:
     height = HeightFilter(Parameters())
     height.reset(0.0, 0.2)
     for _ in range(20):
@@ -117,7 +117,7 @@ def rest(height: HeightFilter, begin_s: int, airs_m: list[float]) -> None:
         height.update_barometer(BarometricHeight(second * NS_PER_S, air_m, referenced=True))
 
 
-def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None:
+def test_ride_undetected_by_the_unit_increases_the_height_uncertainty() -> None:
     """It may be a fan: nobody is moved, and nobody is sure."""
     height = HeightFilter(Parameters())
     height.reset(0.0, 0.2)
@@ -128,7 +128,7 @@ def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None
     assert math.sqrt(height.variance_m2) > 3.2
 
 
-def test_after_a_ride_that_nobody_felt_the_only_storey_known_is_not_the_one() -> None:
+def test_undetected_ride_is_not_assigned_to_the_only_known_storey() -> None:
     """The first thing that somebody does; then they walk where nobody has walked before."""
     height = HeightFilter(Parameters())
     height.reset(0.0, 0.2)
@@ -138,7 +138,7 @@ def test_after_a_ride_that_nobody_felt_the_only_storey_known_is_not_the_one() ->
     assert math.sqrt(height.variance_m2) > 8.0
 
 
-def test_doors_that_slam_are_no_ride() -> None:
+def test_slamming_doors_are_no_ride() -> None:
     """Waves of some metres, 1.5 a second, gone in a second or two (``edge.simulation``)."""
     for phase in range(10):
         height = HeightFilter(Parameters())
@@ -153,7 +153,7 @@ def test_doors_that_slam_are_no_ride() -> None:
         assert math.sqrt(height.variance_m2) < 0.5
 
 
-def test_a_door_that_opens_and_weather_that_turns_are_no_ride() -> None:
+def test_opened_door_and_changing_weather_are_no_ride() -> None:
     for airs_m in ([5.0] * 10 + [8.0] * 30, [5.0 + 0.008 * k for k in range(600)]):
         height = HeightFilter(Parameters())
         height.reset(0.0, 0.2)

@@ -47,7 +47,7 @@ def positions_of(simulation: Simulation) -> list[Position]:
 
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("plan_turned_deg", [0.0, 75.0])
-def test_the_path_lies_right_on_the_plan(seed: int, plan_turned_deg: float) -> None:
+def test_path_agrees_with_the_plan(seed: int, plan_turned_deg: float) -> None:
     scenario = find_scenario("square-60m")
     simulation = Simulation(scenario, seed, UNCALIBRATED_SENSORS)
     anchor, turned_rad = load_building().anchor, math.radians(plan_turned_deg)

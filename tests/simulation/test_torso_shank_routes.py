@@ -44,7 +44,7 @@ def test_sides_and_headings_of_the_court_are_as_good_as_documented(place):
     assert np.mean([headings_deg for _, headings_deg in measured]) < 3.9
 
 
-def test_the_roundabout_ends_where_it_began_within_what_is_stated():
+def test_closure_of_the_roundabout_is_within_the_stated_uncertainty():
     off_m = []
     for seed in SEEDS:
         rows, _ = walked("roundabout-50m", "waist", seed)

@@ -21,7 +21,7 @@ LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
 
 @pytest.mark.parametrize(("full_scale_g", "short"), [(8.0, 0.03), (6.0, 0.08)])
 @pytest.mark.parametrize("is_reported", [True, False])
-def test_what_was_cut_off_is_found_by_the_next_stance(full_scale_g, short, is_reported):
+def test_clipped_force_is_recovered_at_the_next_stance(full_scale_g, short, is_reported):
     simulation = Simulation(Scenario("sprint", "sprints", LEGS), seed=1)
     full_scale_mps2 = full_scale_g * GRAVITY_MPS2
     imu = inertial_samples(simulation)

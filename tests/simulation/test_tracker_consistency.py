@@ -48,7 +48,7 @@ def inconsistent(rows):
     return (rows.reasons & Reason.INCONSISTENT) != 0
 
 
-def test_feet_raised_and_put_down_slowly_lose_the_height_and_it_is_stated():
+def test_slowly_raised_feet_are_reported_as_lost_height():
     rows = raised_rows()
     off_m = np.abs(rows.position_n_m[-1, 2])  # they stand where they stood
     std_m = np.sqrt(rows.position_cov_m2[-1, 2, 2])
@@ -58,7 +58,7 @@ def test_feet_raised_and_put_down_slowly_lose_the_height_and_it_is_stated():
     assert inconsistent(rows)[-1]
 
 
-def test_no_row_is_good_whose_height_is_wrong_by_half_a_storey():
+def test_row_with_a_height_error_of_half_a_storey_is_not_good():
     rows = raised_rows()
     off_m = np.abs(rows.position_n_m[:, 2])
     wrong = rows.stationary & (off_m > 1.5)  # in mid-air a height is no error
@@ -66,7 +66,7 @@ def test_no_row_is_good_whose_height_is_wrong_by_half_a_storey():
     assert not np.any(wrong & (rows.quality == Quality.GOOD))
 
 
-def test_a_height_that_is_lost_stays_lost_however_well_the_wearer_walks_on():
+def test_lost_height_stays_lost_during_later_good_steps():
     imu, more = raised_slowly(RAISED), walk(strides=15).imu
     tracker = EskfTracker(DESCRIPTION, BELIEVING)
     later_ns = imu.t_ns[-1] + 5_000_000
@@ -84,7 +84,7 @@ def test_a_height_that_is_lost_stays_lost_however_well_the_wearer_walks_on():
     assert rows.position_cov_m2[-1, 2, 2] >= rows.position_cov_m2[first, 2, 2]
 
 
-def test_one_contradiction_marks_the_rows_after_it_and_no_more():
+def test_single_contradiction_marks_rows_without_losing_the_height():
     """Once is doubt of a decimetre or two, which stay stated, and no lost height."""
     rows = believed(raised_slowly(1, height_m=0.45))
     assert inconsistent(rows).any()
@@ -101,7 +101,7 @@ def test_walkers_runners_climbers_and_crawlers_are_consistent(legs, calibrated):
     assert not inconsistent(rows).any()
 
 
-def test_with_a_barometer_a_ride_in_a_lift_is_consistent():
+def test_lift_ride_with_a_barometer_is_consistent():
     legs = (Stand(4.0), Walk(((6.0, 0.0),)), Ride(9.0), Walk(((0.0, 0.0),)), Stand(2.0))
     rows = simulated(Scenario("lift", "rides", legs), CONSUMER_SENSORS)
     assert rows.position_n_m[-1, 2] == pytest.approx(-9.0, abs=0.6)

@@ -25,7 +25,7 @@ WAY = Crawl(((8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (-4.0, 5.0), (-4.0, 0.0), (4.0,
 
 
 @pytest.mark.parametrize("seed", [100, 101, 104])
-def test_a_recording_that_begins_in_mid_crawl_takes_no_glide_for_a_stance(seed):
+def test_recording_that_starts_while_crawling_has_no_false_stance(seed):
     """The first stances teach the gyroscope's bias; a glide among them taught a wrong one."""
     scenario = Scenario("crawl", "crawls", (Stand(4.0), WAY))
     simulation = Simulation(scenario, seed, UNCALIBRATED_SENSORS)
@@ -60,12 +60,12 @@ def standing(motion_m2ps4, speed_mps):
     [(0.7, 1.0, True), (0.7, 0.2, False), (0.03, 1.0, False), (0.7, -1.0, True)],
     ids=["is_gliding", "stands nearly", "the stillest of all around", "backwards"],
 )
-def test_a_glide_is_reported_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is_one):
+def test_glide_is_detected_only_with_a_known_velocity(motion_m2ps4, speed_mps, is_one):
     ring, state = standing(motion_m2ps4, speed_mps)
     assert is_gliding(ring, new_progress()[0], state, 0, EskfConfig()) is is_one
 
 
-def test_a_gyroscope_that_is_worse_than_its_kind_is_doubted_about_the_vertical_too():
+def test_large_gyroscope_bias_increases_the_unobserved_vertical_effect():
     config = EskfConfig()
     state = new_filter_state()[0]
     state["unobserved_bias_std_radps"] = config.start.data_sheet_bias_std_radps

@@ -47,7 +47,7 @@ def walked(seed, bias_radps, legs=LEGS):
 
 
 @pytest.mark.parametrize("bias_deg", [1.0, -2.0])
-def test_a_start_on_the_move_is_stated(bias_deg):
+def test_start_in_motion_has_a_stated_heading_uncertainty(bias_deg):
     stated = []
     for seed in range(6):
         rows, way_m, _ = walked(seed, np.radians(bias_deg))
@@ -61,7 +61,7 @@ def test_a_start_on_the_move_is_stated(bias_deg):
     assert np.mean(stated) > 0.85
 
 
-def test_the_first_rest_shows_the_bias_and_turns_the_heading_back():
+def test_first_rest_corrects_the_bias_and_the_heading():
     rows, _, drift_rad = walked(1, np.radians(3.0))
     rests = np.flatnonzero(rows.stationary & (rows.t_ns > 45e9))
     before, after = drift_rad[rests[0]], drift_rad[-1]
@@ -70,7 +70,7 @@ def test_the_first_rest_shows_the_bias_and_turns_the_heading_back():
     assert np.degrees(rows.heading_std_rad[-1]) < 25.0
 
 
-def test_a_rest_before_the_walk_leaves_nothing_to_doubt():
+def test_rest_before_the_walk_determines_the_bias():
     simulation = Simulation(Scenario("rested", "stands first", LEGS), 1, UNCALIBRATED_SENSORS)
     rows = track(simulation.description, inertial_samples(simulation), "eskf")
     assert np.degrees(rows.heading_std_rad[round(3.0 * RATE_HZ)]) < 1.0
@@ -78,7 +78,7 @@ def test_a_rest_before_the_walk_leaves_nothing_to_doubt():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_who_starts_on_the_move_is_ordered_to_stand_still_until_he_has(seed):
+def test_start_in_motion_requests_a_rest_until_one_is_observed(seed):
     rows, _, _ = walked(seed, np.radians(0.5))
     reported = unsettled(rows)
     strides = np.flatnonzero(~rows.stationary)
@@ -91,7 +91,7 @@ def unsettled(rows):
     return (rows.reasons & Reason.UNSETTLED) != 0
 
 
-def test_a_foot_that_sways_does_not_rest():
+def test_swaying_foot_is_no_rest():
     """Recorded feet that twist slowly in stance scatter by half of their mean rate at least."""
     config = EskfConfig()
     state = new_filter_state()[0]

@@ -27,26 +27,26 @@ LIMPS_AND_DRAGS = Scenario(
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("motion", ["raised-feet", "careful-steps", "dragged-foot"])
-def test_no_hard_motion_is_silently_wrong(motion, seed):
+def test_hard_motion_has_no_unreported_error(motion, seed):
     assert walk_end(MOTIONS[motion], seed, "eskf").score.silently_wrong == 0.0
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_feet_raised_slowly_come_back_to_their_floor(seed):
+def test_slowly_raised_feet_return_to_their_floor(seed):
     end = walk_end(MOTIONS["raised-feet"], seed, "eskf")
     assert abs(end.vertical_m) < 0.3  # up to 17 where smooth motion was taken for a rest
     assert end.horizontal_m < 0.5
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_feet_raised_a_little_are_not_carried_up_by_each_lift(seed):
+def test_slightly_raised_feet_accumulate_no_height(seed):
     end = walk_end(LOW, seed, "eskf")
     assert abs(end.vertical_m) < 0.4
     assert end.score.silently_wrong == 0.0
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_dragged_foot_does_not_lose_its_way(seed):
+def test_dragged_foot_keeps_its_position(seed):
     """40 m: 8 m short where each glide that is still for an instant is a stance."""
     end = walk_end(MOTIONS["dragged-foot"], seed, "eskf")
     assert end.horizontal_m < 4.0
@@ -54,7 +54,7 @@ def test_a_dragged_foot_does_not_lose_its_way(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_limp_that_becomes_a_drag_keeps_its_way(seed):
+def test_limp_that_becomes_a_drag_keeps_its_position(seed):
     end = walk_end(LIMPS_AND_DRAGS, seed, "eskf")
     assert end.horizontal_m < 1.5
     assert end.score.silently_wrong == 0.0

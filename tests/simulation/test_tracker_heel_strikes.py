@@ -51,7 +51,7 @@ def clipped(description, imu):
 
 @pytest.mark.parametrize("clips", [False, True])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_a_strike_is_put_right_and_not_the_swing_before_it(seed, clips):
+def test_heel_strike_is_corrected_without_changing_the_swing(seed, clips):
     simulation = Simulation(Scenario("strikes", "heel strikes", LEGS), seed)
     imu = inertial_samples(simulation)
     no_floor = EskfConfig(floor=FloorConfig(gate_m=0.0, gate_slope=0.0, gate_stds=0.0))

@@ -30,14 +30,14 @@ RATIO_BOUNDS = (0.606, 1.394)
 
 
 @pytest.mark.parametrize("name", ["straight", "square of 60 m", "J-shape", "stairs"])
-def test_a_calibrated_sensor_is_as_good_as_is_stated(name):
+def test_errors_of_a_calibrated_sensor_agree_with_the_covariance(name):
     endings = [ending(name, seed, calibrated=True) for seed in SEEDS]
     assert NEES_BOUNDS[0] < np.mean([one.nees for one in endings]) < NEES_BOUNDS[1]
     ratio = rms(np.array([one.heading_rad / one.heading_std_rad for one in endings]))
     assert RATIO_BOUNDS[0] < ratio < RATIO_BOUNDS[1]
 
 
-def test_a_sensor_that_nobody_calibrated_is_not_stated_too_sure():
+def test_uncalibrated_sensor_is_not_overconfident():
     """Biases of 1 deg/s, axes off by half a degree: it may be stated too cautiously."""
     for name in ("straight", "J-shape"):
         endings = [ending(name, seed, calibrated=False) for seed in SEEDS]
@@ -46,7 +46,7 @@ def test_a_sensor_that_nobody_calibrated_is_not_stated_too_sure():
         assert rms(np.array([one.heading_rad for one in endings])) < np.radians(20.0)
 
 
-def test_gains_that_a_long_walk_no_longer_shows_are_stated():
+def test_gains_unobservable_in_a_long_walk_are_in_the_covariance():
     """Strides that are alike for a lap teach the filter's biases what gains do to them."""
     endings = [ending("track of 400 m", seed, calibrated=False) for seed in range(6)]
     assert np.mean([one.nees for one in endings]) < nees_bounds(6)[1]
@@ -54,7 +54,7 @@ def test_gains_that_a_long_walk_no_longer_shows_are_stated():
 
 
 @pytest.mark.parametrize("bias_radps", [0.005, 0.03, 0.06])
-def test_whatever_the_gyroscope_shows_at_rest_is_its_bias(bias_radps):
+def test_gyroscope_reading_at_rest_is_taken_as_its_bias(bias_radps):
     made = walk(strides=8, gyro_bias_radps=(0.3 * bias_radps, -bias_radps, 0.6 * bias_radps))
     rows = track(made.description, made.imu, "eskf")
     assert np.linalg.norm(rows.position_n_m[-1, :2]) == pytest.approx(8 * 1.3, rel=0.02)
@@ -62,7 +62,7 @@ def test_whatever_the_gyroscope_shows_at_rest_is_its_bias(bias_radps):
     assert abs(turned_rad) < 0.02 + 2.5 * bias_radps  # it turned while the bias was unknown
 
 
-def test_a_gap_is_stated_in_full_however_well_the_foot_lands():
+def test_uncertainty_of_a_gap_is_not_reduced_by_a_good_landing():
     made = walk(strides=20)
     missing = np.ones(len(made.imu), np.bool_)
     missing[2000:2200] = False
@@ -77,21 +77,21 @@ def test_a_gap_is_stated_in_full_however_well_the_foot_lands():
     assert np.sqrt(rows.position_cov_m2[-1, 0, 0]) > 1.4  # 1.5 m/s for a second
 
 
-def test_the_table_says_which_sensors():
+def test_table_names_the_simulated_sensors():
     table = honesty_table([Honesty("straight", False, 24, 1.0, 2.0, 0.5, 1.9, 0.95)])
     assert [next(iter(column.cells)) for column in table.columns] == [
         "straight", "data sheet", "1.0", "2.0", "0.50", "1.90", "1.28-2.88", "95",
     ]  # fmt: skip
 
 
-def test_the_bounds_are_those_of_the_chi_square_distribution():
+def test_bounds_agree_with_the_chi_square_distribution():
     """By a table of it: chi2(24) / 12 and chi2(200) / 100."""
     assert nees_bounds(12) == pytest.approx((12.401 / 12, 39.364 / 12), abs=0.01)
     assert nees_bounds(100) == pytest.approx((162.728 / 100, 241.058 / 100), abs=0.001)
 
 
 @pytest.mark.parametrize("rate_hz", [60.0, 200.0])
-def test_crawling_is_not_stated_too_sure(rate_hz):
+def test_crawling_is_not_overconfident(rate_hz):
     """The toes drag and the foot hardly turns; no stride of a crawl is an ordinary one."""
     way = Crawl(((8.0, 0.0), (8.0, 4.0), (0.0, 4.0), (0.0, 0.0)))
     scenario = Scenario("crawl", "crawls", (Stand(4.0), way, Stand(3.0)), rate_hz=rate_hz)

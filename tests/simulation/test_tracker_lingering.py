@@ -17,7 +17,7 @@ from tests.rig.inertial_walk import inertial_samples
 
 
 @pytest.mark.parametrize("seed", [103, 104])
-def test_small_slow_steps_on_one_spot_add_up(seed):
+def test_small_slow_steps_on_one_spot_are_integrated(seed):
     """Taken for sway, steps of some centimetres were lost, and the place was stated as known."""
     one = stray(Wearer("waits", (Stand(4.0), Wait(150.0))), seed, calibrated=True)
     assert one.error_m < 0.03
@@ -26,7 +26,7 @@ def test_small_slow_steps_on_one_spot_add_up(seed):
 
 
 @pytest.mark.parametrize("leg", [Kneel(20.0), Sit(60.0)], ids=["kneels", "sits"])
-def test_anyone_gets_up_again_is_on_his_floor(leg):
+def test_wearer_who_gets_up_again_is_on_the_same_floor(leg):
     for calibrated in (True, False):
         one = stray(Wearer("lingers", (Stand(4.0), leg, Stand(3.0))), 101, calibrated)
         assert one.error_m < 0.15
@@ -34,7 +34,7 @@ def test_anyone_gets_up_again_is_on_his_floor(leg):
         assert one.silent == 0.0
 
 
-def test_a_rest_tells_of_the_bias_whatever_the_rate():
+def test_bias_estimate_of_a_rest_is_independent_of_the_sample_rate():
     """What was left out as worthless was judged by the sample: fast ones learned half."""
     known = []
     for rate_hz in (100.0, 200.0, 800.0):
@@ -46,7 +46,7 @@ def test_a_rest_tells_of_the_bias_whatever_the_rate():
     assert known[2] == pytest.approx(known[1], rel=0.2)
 
 
-def test_the_table_says_who_and_with_which_sensors():
+def test_table_names_the_activity_and_the_sensors():
     assert len({kind.does for kind in KINDS}) == len(KINDS)
     one = Wore("waits", False, 0.012, 0.5, 2.0, 3.0, 0.1, 0.2, 0.95, 0.0)
     assert [next(iter(column.cells)) for column in wearers_table([one]).columns] == [
@@ -54,7 +54,7 @@ def test_the_table_says_who_and_with_which_sensors():
     ]  # fmt: skip
 
 
-def test_a_part_of_a_walk_is_recorded_from_its_cut_on():
+def test_part_of_a_walk_is_recorded_from_its_start():
     whole = stray(Wearer("stands", (Stand(8.0),)), 1, calibrated=True)
     part = stray(Wearer("stands", (Stand(8.0),), cut_s=4.0), 1, calibrated=True)
     assert part.error_m < 0.02

@@ -13,7 +13,7 @@ SWING_S, STRIDE_M = 0.7, 1.3
 
 
 @pytest.mark.parametrize("into_s", [0.05, 0.15, 0.25, 0.4])
-def test_a_swing_that_was_cut_is_no_stance(into_s):
+def test_truncated_swing_is_no_stance(into_s):
     first = round((2.0 + into_s) * MADE.description.rate_hz)
     rows = track(MADE.description, part(MADE.imu, slice(first, None)), "eskf")
     landed = round((SWING_S - into_s) * MADE.description.rate_hz)

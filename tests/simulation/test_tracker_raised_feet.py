@@ -22,7 +22,7 @@ from tests.rig.raised_foot import DESCRIPTION, raised_slowly
 
 
 @pytest.mark.parametrize("height_m", [0.3, 0.6, 0.9])
-def test_feet_raised_and_put_down_slowly_stay_on_their_floor(height_m):
+def test_slowly_raised_and_lowered_feet_keep_their_height(height_m):
     rows = track(DESCRIPTION, raised_slowly(12, height_m), "eskf")
     std_m = np.sqrt(rows.position_cov_m2[-1, 2, 2])
     assert abs(rows.position_n_m[-1, 2]) < min(0.1, 3.0 * std_m + 0.01)
@@ -30,7 +30,7 @@ def test_feet_raised_and_put_down_slowly_stay_on_their_floor(height_m):
     assert not np.any(rows.reasons & Reason.INCONSISTENT)
 
 
-def test_nobody_stands_in_mid_air():
+def test_raised_foot_is_not_stationary():
     rows = track(DESCRIPTION, raised_slowly(6), "eskf")
     high = rows.position_n_m[:, 2] < -0.2
     assert np.mean(high) > 0.1
@@ -38,7 +38,7 @@ def test_nobody_stands_in_mid_air():
 
 
 @pytest.mark.parametrize("trial", ["2018-02-09-11-16-53", "2018-02-09-11-19-39"])
-def test_recorded_feet_that_are_raised_slowly(hard_walks, trial):
+def test_height_error_of_slowly_raised_recorded_feet_is_small(hard_walks, trial):
     source = RecordingSource(hard_walks / "vicon" / trial)
     rows = track(source.description, source.imu, "eskf")
     score = score_track(rows, read_truth(hard_walks / "vicon" / trial), closed_loop=False)
@@ -60,7 +60,7 @@ def test_recorded_feet_that_are_raised_slowly(hard_walks, trial):
     ],
     ids=["a walk becomes a run", "a ladder and a search", "laden down stairs"],
 )
-def test_after_a_rest_other_gaits_are_believed_at_once(legs, rise_m):
+def test_stances_of_another_gait_are_accepted_directly_after_a_rest(legs, rise_m):
     scenario = Scenario("gaits", "changes", (Stand(5.0), *legs, Stand(3.0)))
     simulation = Simulation(scenario, 3, UNCALIBRATED_SENSORS)
     tracker = EskfTracker(simulation.description)
@@ -70,7 +70,7 @@ def test_after_a_rest_other_gaits_are_believed_at_once(legs, rise_m):
     assert -rows.position_n_m[-1, 2] == pytest.approx(rise_m, abs=0.4)
 
 
-def test_restless_stances_after_short_steps_are_believed():
+def test_restless_stances_after_short_steps_are_accepted():
     """On a landing, less still than those before: the filter is off along the floor only."""
     source = open_source("simulated:stairs?seed=71")
     assert isinstance(source, SimulatedSource)
@@ -82,7 +82,7 @@ def test_restless_stances_after_short_steps_are_believed():
         assert rows.stationary[(t_s > footfall_s) & (t_s < footfall_s + 0.3)].any(), footfall_s
 
 
-def test_a_filter_that_is_wrong_along_the_floor_is_still_corrected():
+def test_horizontal_velocity_error_is_corrected_by_a_stance():
     """A swing with a fault of the gyroscope: its velocity is wrong, and the stance is true."""
     made = walk(strides=10)
     imu = made.imu

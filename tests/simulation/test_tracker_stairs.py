@@ -56,7 +56,7 @@ def test_five_floors_keep_their_height(riser_m):
     assert np.mean(np.abs(error_m) < 2.0 * std_m + 0.02) > 0.95
 
 
-def test_what_stairs_may_add_up_is_stated():
+def test_covariance_grows_with_the_systematic_error_of_stairs():
     once_m2, twice_m2, thrice_m2 = (
         tracked(flights(1.53, count), seed=2)[1][-1] ** 2 for count in (1, 2, 3)
     )
@@ -74,7 +74,7 @@ def test_what_stairs_may_add_up_is_stated():
     ],
     ids=["winding", "two at once", "running", "running, two at once"],
 )
-def test_anyone_climbs_in_his_own_way_keeps_his_height(legs):
+def test_individual_climbing_styles_keep_their_height(legs):
     height_m, _, true_m = tracked(legs, seed=7)
     assert np.abs(height_m - true_m).max() < 0.06 * true_m.max()
     for seed in range(3):  # and by sensors of a data sheet it is said how far it may be off
@@ -82,7 +82,7 @@ def test_anyone_climbs_in_his_own_way_keeps_his_height(legs):
         assert np.mean(np.abs(height_m - true_m) < 2.0 * std_m + 0.02) > 0.9
 
 
-def test_a_gentle_ramp_that_passes_for_a_floor_is_doubted():
+def test_height_of_a_gentle_ramp_is_within_its_uncertainty():
     legs = (Stand(4.0), Walk(((24.0, 0.0),), rise_m=0.48), Walk(((30.0, 0.0),)), Stand(2.0))
     height_m, std_m, true_m = tracked(legs, seed=3)
     assert abs(height_m[-1] - true_m[-1]) > 0.3  # nothing tells it from a habit of the strides
@@ -92,7 +92,7 @@ def test_a_gentle_ramp_that_passes_for_a_floor_is_doubted():
 
 
 @pytest.mark.parametrize("seed", [4, 5, 6, 7])
-def test_a_sprint_on_the_flat_is_stated(seed):
+def test_height_error_of_a_level_sprint_is_within_its_uncertainty(seed):
     """Clipped strides of three metres seem to rise by decimetres, some of them past any gate."""
     there_and_back = Walk(((80.0, 0.0), (0.0, 0.0)), pace="sprint")
     height_m, std_m, _ = tracked((Stand(4.0), there_and_back, Stand(2.0)), seed)

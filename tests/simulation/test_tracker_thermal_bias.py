@@ -36,7 +36,7 @@ def run(imu):
     return tracker._state[0], rows
 
 
-def test_the_slope_is_learned_at_rest_and_used_on_the_walk():
+def test_temperature_slope_is_estimated_at_rest_and_applied_while_walking():
     imu = warmed()
     state, rows = run(imu)
     np.testing.assert_allclose(state["gyro_bias_per_k"], PER_K_RADPS, atol=1e-5)
@@ -47,7 +47,7 @@ def test_the_slope_is_learned_at_rest_and_used_on_the_walk():
     assert rows.heading_std_rad[-1] < blind.heading_std_rad[-1]
 
 
-def test_a_temperature_that_is_none_changes_nothing():
+def test_invalid_temperature_changes_nothing():
     imu = warmed()
     _, without = run(replace(imu, imu_temperature_degc=None))
     nonsense = np.where(np.arange(len(imu)) % 2, np.nan, -273.0)

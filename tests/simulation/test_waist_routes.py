@@ -18,7 +18,7 @@ def tracked(route):
 
 @pytest.mark.parametrize("route", ["corridor-174m", "three-turns-60m"])
 @pytest.mark.parametrize("seed", range(3))
-def test_errors_stay_below_three_per_cent_of_the_way(route, seed):
+def test_errors_stay_below_three_per_cent_of_the_distance(route, seed):
     """Li et al. 2014: 5 m at most on 174 m."""
     rows, truth = tracked(f"{route}?seed={seed}")
     score = score_track(rows, truth, closed_loop=False)

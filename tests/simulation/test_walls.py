@@ -26,7 +26,7 @@ def errors_m(person: Person, run: Run) -> Floats:
     return np.asarray(np.linalg.norm(run.places_m - person.truth.place_m[:, :2], axis=1))
 
 
-def test_with_the_plan_ten_minutes_inside_cost_nothing(
+def test_plan_keeps_the_accuracy_for_ten_minutes_indoors(
     kind: FuserKind, people: list[Person]
 ) -> None:
     """Without it the heading's drift turns the path; with it the region is small and holds."""
@@ -39,7 +39,7 @@ def test_with_the_plan_ten_minutes_inside_cost_nothing(
         assert np.mean(np.array(walled.floors)[inside] == _storeys(person)[inside]) > 0.9
 
 
-def test_a_plan_of_another_building_is_given_up(kind: FuserKind, people: list[Person]) -> None:
+def test_plan_of_another_building_is_abandoned(kind: FuserKind, people: list[Person]) -> None:
     """Its walls stand in the way move after move; then the path alone is believed again."""
     person = people[0]
     other = draw_incident(np.random.default_rng(12))[0].building
@@ -55,7 +55,7 @@ def test_a_plan_of_another_building_is_given_up(kind: FuserKind, people: list[Pe
     assert np.median(errors_m(person, misled)[again]) < 4.0
 
 
-def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
+def test_restored_filter_continues_with_identical_numbers(
     kind: FuserKind, people: list[Person]
 ) -> None:
     person = people[1]
@@ -77,9 +77,7 @@ def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
     assert restored.save() == straight.save()
 
 
-def test_a_gap_in_the_radio_is_not_taken_for_a_walk_through_walls(
-    kind: FuserKind, people: list[Person]
-) -> None:
+def test_gap_in_the_radio_is_no_walk_through_walls(kind: FuserKind, people: list[Person]) -> None:
     """Half a minute is missing again and again; the way between is not a straight one."""
     person = people[0]
     fuser = kind.new()
@@ -106,7 +104,7 @@ def _storeys(person: Person) -> Floats:
 
 
 @pytest.mark.parametrize(("seed", "which"), [(8016, 5), (61010, 4)])
-def test_anyone_walls_would_hold_in_the_wrong_rooms_is_found(
+def test_unit_confined_to_wrong_rooms_is_relocalised(
     kind: FuserKind, seed: int, which: int
 ) -> None:
     """Three standard deviations off at the door: both were minutes 8 to 12 m off with 1 m stated,

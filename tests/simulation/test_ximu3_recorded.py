@@ -44,7 +44,7 @@ class PlayedLine:
 
 
 @pytest.mark.parametrize("binary", [False, True])
-def test_the_path_is_that_of_the_recording(
+def test_decoded_path_agrees_with_the_recording(
     binary: bool, walks: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = RecordingSource(walks / "xio" / "short_walk")
