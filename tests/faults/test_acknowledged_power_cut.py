@@ -112,7 +112,7 @@ def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
         yield unit
 
 
-def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
+def test_acknowledged_messages_are_in_the_log_after_a_power_cut(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, hasty: None, unit: Unit
 ) -> None:
     disk, cuts = Disk(), list[tuple[int, Path]]()
@@ -145,7 +145,7 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
         assert set(range(1, reported + 1)) <= there(log)
 
 
-def test_while_one_units_backlog_comes_others_are_reported_what_they_may_forget(
+def test_acknowledgements_to_other_units_continue_during_a_backlog(
     tmp_path: Path, hasty: None, unit: Unit, make_position: MakePosition
 ) -> None:
     server = JournalServer(U, unit.journal)

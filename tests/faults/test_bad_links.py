@@ -30,7 +30,7 @@ def test_every_message_is_in_the_log_once(troubled: Site, fault: BadLink) -> Non
     assert_nothing_is_lost(troubled, fault, PATIENCE_S)
 
 
-def test_a_console_shows_within_seconds_that_nothing_comes_any_more_and_that_it_comes_again(
+def test_console_shows_loss_and_return_of_the_link_within_seconds(
     troubled: Site,
 ) -> None:
     """Nobody says goodbye: packets just end."""

@@ -81,7 +81,7 @@ class HaController:
         return 0.015 + self.chance.expovariate(1.0) * self.queue_s
 
 
-def test_before_the_station_has_answered_nothing_is_claimed() -> None:
+def test_clock_without_an_answer_keeps_the_machines_time() -> None:
     pair = HaController()
     pair.linked = False
     pair.run(30.0)
@@ -100,7 +100,7 @@ def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
 
 
 @pytest.mark.parametrize("drift", [-4e-5, 0.0, 4e-5])
-def test_the_drift_is_learnt_and_carries_over_an_outage(drift: float) -> None:
+def test_drift_is_estimated_and_applied_during_an_outage(drift: float) -> None:
     pair = HaController(drift, queue_s=0.002)
     pair.run(1200.0)
     estimate = pair.clock.estimate()
@@ -111,7 +111,7 @@ def test_the_drift_is_learnt_and_carries_over_an_outage(drift: float) -> None:
     assert abs(pair.error_s()) < 3.0 * pair.clock.utc_std_s() < 0.1
 
 
-def test_its_uncertainty_is_honest_on_links_that_queue() -> None:
+def test_stated_uncertainty_covers_errors_of_queueing_links() -> None:
     """Errors in standard deviations, over many units at a random time each."""
     squares = []
     for seed in range(60):
@@ -136,7 +136,7 @@ def test_a_slow_exchange_among_quick_ones_hardly_counts() -> None:
     assert abs(after.offset_ns - before.offset_ns) < 2_000_000
 
 
-def test_exchanges_that_cannot_be_are_not_used() -> None:
+def test_impossible_exchanges_are_not_used() -> None:
     offset = ClockOffsetFilter()
     assert not offset.note(Exchange(10, 0, 0, 5))
     assert not offset.note(Exchange(0, 20, 10, 50))
@@ -151,7 +151,7 @@ def test_the_unit_follows_a_station_whose_clock_is_set_forward_by_a_day() -> Non
     assert abs(pair.error_s()) < 0.01
 
 
-def test_a_station_whose_clock_is_set_back_goes_on_and_so_does_the_unit() -> None:
+def test_station_and_unit_continue_after_the_stations_clock_is_set_back() -> None:
     pair = HaController()
     pair.run(60.0)
     stamps_ns = []
@@ -164,7 +164,7 @@ def test_a_station_whose_clock_is_set_back_goes_on_and_so_does_the_unit() -> Non
 
 
 @pytest.mark.parametrize("by_s", [DAY_S, -DAY_S])
-def test_a_unit_whose_own_clock_is_set_goes_on_in_the_station_s_time(by_s: float) -> None:
+def test_unit_whose_own_clock_is_set_continues_in_the_stations_time(by_s: float) -> None:
     pair = HaController()
     pair.run(30.0)
     stamper = Stamper(U, 1, pair.clock, pair.clock.utc_std_s)
@@ -237,7 +237,7 @@ def test_a_unit_s_wrong_utc_reorders_nothing(by_s: float) -> None:
     assert script.fused[-1].t_meas_ns == script.t_ns - NS_PER_S
 
 
-def test_a_station_set_forward_by_a_day_keeps_the_order_and_is_of_now_again(walk: Walk) -> None:
+def test_station_set_forward_by_a_day_keeps_the_order_and_current_times(walk: Walk) -> None:
     walk.step(40)
     walk.script.now_s += DAY_S
     walk.step(60)
@@ -247,7 +247,7 @@ def test_a_station_set_forward_by_a_day_keeps_the_order_and_is_of_now_again(walk
     assert walk.script.pipeline.state.units[U].link == "live"
 
 
-def test_what_was_stated_before_is_placed_before_when_it_comes_out_of_the_journal(
+def test_backfilled_message_is_inserted_at_its_time(
     walk: Walk,
 ) -> None:
     script = walk.script
@@ -267,7 +267,7 @@ def test_what_was_stated_before_is_placed_before_when_it_comes_out_of_the_journa
     assert [step.north_m for step in trail] == sorted(step.north_m for step in trail)
 
 
-def test_the_heartbeat_says_how_the_clocks_stand() -> None:
+def test_heartbeat_reports_offset_uncertainty_and_drift_of_the_clock() -> None:
     reported = Heartbeat(Header(U, 1, 1, 1), 1, 9, -604_800.25, 0.0021, -4.2e-5)
     received = Heartbeat.from_wire(reported.to_wire())
     assert received.clock_ahead_s == pytest.approx(-604_800.25)

@@ -70,7 +70,9 @@ def pair(script: Script) -> tuple[Machine, Machine]:
     return first, second
 
 
-def test_two_that_speak_at_once_are_an_alarm(script: Script, pair: tuple[Machine, Machine]) -> None:
+def test_two_simultaneous_devices_raise_an_alarm(
+    script: Script, pair: tuple[Machine, Machine]
+) -> None:
     both_walk(script, *pair, seconds=10.0)
     assert alarms(script) == [AlarmState.RAISED]
     assert is_shown_as_cloned(script)
@@ -92,7 +94,9 @@ def test_both_paths_are_kept_and_only_one_is_shown(
     assert len(shown) == 1, "it does not jump between the two"
 
 
-def test_it_is_over_when_one_of_them_is_gone(script: Script, pair: tuple[Machine, Machine]) -> None:
+def test_alarm_is_resolved_when_one_device_is_gone(
+    script: Script, pair: tuple[Machine, Machine]
+) -> None:
     first, second = pair
     both_walk(script, first, second, seconds=10.0)
     for _ in range(90):
@@ -106,13 +110,15 @@ def test_it_is_over_when_one_of_them_is_gone(script: Script, pair: tuple[Machine
     assert unit.position.header.boot_id == 11, "the one that is left is shown"
 
 
-def test_silence_of_both_resolves_nothing(script: Script, pair: tuple[Machine, Machine]) -> None:
+def test_silence_of_both_devices_resolves_nothing(
+    script: Script, pair: tuple[Machine, Machine]
+) -> None:
     both_walk(script, *pair, seconds=10.0)
     script.wait(120)
     assert alarms(script) == [AlarmState.RAISED]
 
 
-def test_a_person_may_resolve_it(script: Script, pair: tuple[Machine, Machine]) -> None:
+def test_alarm_is_resolved_by_an_operator(script: Script, pair: tuple[Machine, Machine]) -> None:
     both_walk(script, *pair, seconds=10.0)
     (alarm,) = (one for one in script.alarms if one.rule == "cloned-unit")
     script.act(ResolveAlarm(alarm.alarm_id, "the spare is switched off"))
@@ -120,7 +126,7 @@ def test_a_person_may_resolve_it(script: Script, pair: tuple[Machine, Machine]) 
     assert alarms(script) == [AlarmState.RAISED, AlarmState.RESOLVED]
 
 
-def test_a_unit_that_is_started_again_and_again_is_one(script: Script) -> None:
+def test_repeatedly_restarted_unit_is_one_device(script: Script) -> None:
     for boot_id in range(1, 20):
         machine = Machine(script, boot_id, 900.0 - script.now_s)
         for _ in range(20):
@@ -131,7 +137,7 @@ def test_a_unit_that_is_started_again_and_again_is_one(script: Script) -> None:
     assert alarms(script) == []
 
 
-def test_messages_of_the_boot_before_that_come_late_are_no_second_machine(script: Script) -> None:
+def test_late_messages_of_the_previous_boot_are_no_second_device(script: Script) -> None:
     """What a dying link had queued comes after the first messages of the next boot."""
     before = Machine(script, 1, 0.0)
     for _ in range(20):
@@ -148,7 +154,7 @@ def test_messages_of_the_boot_before_that_come_late_are_no_second_machine(script
     assert alarms(script) == []
 
 
-def test_what_is_stated_again_or_backdated_is_no_second_machine(script: Script) -> None:
+def test_repeated_or_backdated_message_is_no_second_device(script: Script) -> None:
     recorded = Machine(script, 1, 0.0)
     unheard = [recorded.header(0.5 * number) for number in range(100)]
     for header in unheard[:50]:
@@ -167,7 +173,7 @@ def test_what_is_stated_again_or_backdated_is_no_second_machine(script: Script) 
     assert alarms(script) == []
 
 
-def test_a_recording_of_a_boot_never_received_is_no_second_machine(script: Script) -> None:
+def test_recording_of_an_unknown_boot_is_no_second_device(script: Script) -> None:
     """The unit knew the station's time, so its messages say how old they are."""
     machine = Machine(script, 1, 0.0)
     old_ns = script.t_ns - 3600 * NS_PER_S

@@ -84,7 +84,7 @@ def test_a_unit_links_at_once_beside_a_flood_of_connections(
             until(lambda: bus.router.refused.total > before, "the count of who was refused")
 
 
-def test_links_come_back_at_once_when_person_is_enrolled_under_a_flood(bus: Bus) -> None:
+def test_links_return_at_once_after_an_enrolment_during_a_flood(bus: Bus) -> None:
     with closing(unit(bus.anna)) as anna:
         until(lambda: anna.has_subscriber(KEY), "the link")
         with (
@@ -105,7 +105,7 @@ def next_outage_s(anna: ZenohBus) -> float:
     return time.monotonic() - closed_s
 
 
-def test_refused_connections_are_reported_with_where_they_come_from(bus: Bus) -> None:
+def test_refused_connections_are_reported_with_their_addresses(bus: Bus) -> None:
     with connection_flood("garbage", "127.0.0.1", bus.port, 60.0, held=0, per_s=200):
         until(lambda: any("127.0.1.1" in one for one in bus.router.problems()), "the problem")
     [problem] = bus.router.problems()
@@ -113,7 +113,7 @@ def test_refused_connections_are_reported_with_where_they_come_from(bus: Bus) ->
     assert "docs/howto/when-attacked.md" in problem
 
 
-def test_forty_units_of_an_earlier_authority_that_go_on_trying_hold_up_nobody(
+def test_repeated_attempts_of_forty_units_of_an_old_authority_delay_no_link(
     bus: Bus, tmp_path: Path
 ) -> None:
     earlier = PkiFolder(tmp_path)
@@ -160,7 +160,7 @@ def test_a_revoked_certificate_opens_no_session(bus: Bus) -> None:
     assert bus.link_s() < LINKED_WITHIN_S
 
 
-def test_one_holder_has_few_sessions_at_once(bus: Bus) -> None:
+def test_simultaneous_sessions_of_a_holder_are_limited(bus: Bus) -> None:
     many = bus.pki.enroll("many").identity
     with ExitStack() as stack:
 
@@ -178,7 +178,7 @@ def test_one_holder_has_few_sessions_at_once(bus: Bus) -> None:
     assert bus.link_s() < LINKED_WITHIN_S
 
 
-def test_what_one_holder_leaves_unfinished_is_bounded(bus: Bus) -> None:
+def test_unfinished_messages_of_a_holder_are_limited(bus: Bus) -> None:
     """In every priority of each link that it may have; as much beside a standby."""
     many, key = bus.pki.enroll("unfinished"), POSITION.key("unfinished")
     with closing(unit(many)) as linked:
@@ -192,7 +192,7 @@ def test_what_one_holder_leaves_unfinished_is_bounded(bus: Bus) -> None:
     assert bus.link_s() < LINKED_WITHIN_S
 
 
-def test_messages_of_60_mb_take_no_memory_of_the_router(bus: Bus) -> None:
+def test_messages_of_60_mb_do_not_increase_the_routers_memory(bus: Bus) -> None:
     before_mb = processes.memory_mb(bus.router.pid)
     with closing(unit(bus.anna)) as anna:
         for _ in range(5):

@@ -61,7 +61,7 @@ def on_disk(path: Path, query: str) -> list[tuple[object, ...]]:
         return reading.execute(query).fetchall()
 
 
-def test_who_starts_on_a_full_disk_logs_in_and_is_still_so_when_there_is_room(
+def test_session_made_on_a_full_disk_is_valid_once_there_is_room(
     path: Path, clock: ManualClock
 ) -> None:
     with a_user(path, clock):
@@ -85,9 +85,7 @@ def test_who_starts_on_a_full_disk_logs_in_and_is_still_so_when_there_is_room(
         assert [one.name for one in Roster(again, clock).people()] == ["Ada"]
 
 
-def test_the_change_at_which_the_disk_is_found_full_is_done_too(
-    path: Path, clock: ManualClock
-) -> None:
+def test_change_that_finds_the_disk_full_is_applied(path: Path, clock: ManualClock) -> None:
     with Store(path, memory_fallback=True) as store:
         accounts = accounts_of(store, clock)
         accounts.add_user("mia", PASSWORD, Role.ADMINISTRATOR)
@@ -102,7 +100,7 @@ def test_the_change_at_which_the_disk_is_found_full_is_done_too(
         assert on_disk(path, "SELECT username FROM sessions") == [("mia",)]
 
 
-def test_what_others_changed_in_the_file_meanwhile_stays_and_a_clash_is_stated(
+def test_concurrent_changes_of_the_file_are_kept_and_conflicts_reported(
     path: Path, clock: ManualClock
 ) -> None:
     with a_user(path, clock):
@@ -120,7 +118,7 @@ def test_what_others_changed_in_the_file_meanwhile_stays_and_a_clash_is_stated(
             accounts_of(store, clock).add_user("bob", PASSWORD, Role.VIEWER)
 
 
-def test_what_is_decided_meanwhile_is_shown_and_is_in_the_file_later(
+def test_decisions_during_a_full_disk_are_shown_and_written_later(
     path: Path, clock: ManualClock
 ) -> None:
     def opened(t_s: int) -> Projection:
@@ -149,7 +147,7 @@ def test_what_is_decided_meanwhile_is_shown_and_is_in_the_file_later(
     assert on_disk(path, "SELECT north_m FROM tracks ORDER BY t_s") == [(1.0,), (2.0,), (3.0,)]
 
 
-def test_who_reads_in_memory_as_the_disk_takes_something_again_reads_on(
+def test_open_query_in_memory_continues_when_the_disk_has_room(
     path: Path, clock: ManualClock
 ) -> None:
     with a_user(path, clock):
@@ -162,7 +160,7 @@ def test_who_reads_in_memory_as_the_disk_takes_something_again_reads_on(
     store.close()
 
 
-def test_there_may_be_no_database_at_all(path: Path, clock: ManualClock) -> None:
+def test_missing_database_is_created_once_there_is_room(path: Path, clock: ManualClock) -> None:
     with files_of_at_most(0):
         store = Store(path, memory_fallback=True)
         accounts_of(store, clock).add_user("mia", PASSWORD, Role.ADMINISTRATOR)
@@ -174,7 +172,7 @@ def test_there_may_be_no_database_at_all(path: Path, clock: ManualClock) -> None
     assert [one.name for one in path.parent.iterdir()] == [path.name]
 
 
-def test_a_large_database_leaves_its_tracks_on_the_disk(
+def test_tracks_of_a_large_database_are_not_copied_to_memory(
     path: Path, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(memory_copy, "WHOLE_BYTES_MAX", 10_000)
@@ -193,9 +191,7 @@ def test_a_large_database_leaves_its_tracks_on_the_disk(
         assert len(Records(store, clock).track("FF-01", Window(0, FOREVER_NS))) == 1
 
 
-def test_a_disk_that_hangs_keeps_nobody_from_what_is_in_memory(
-    path: Path, clock: ManualClock
-) -> None:
+def test_hanging_disk_does_not_block_the_database_in_memory(path: Path, clock: ManualClock) -> None:
     hangs = False
     with a_user(path, clock):
         store = Store(path, lambda: hangs, memory_fallback=True)
@@ -207,7 +203,7 @@ def test_a_disk_that_hangs_keeps_nobody_from_what_is_in_memory(
     assert on_disk(path, "SELECT count(*) FROM sessions") == [(1,)], "it was looked at to the end"
 
 
-def test_what_nobody_can_write_for_another_reason_is_refused(path: Path) -> None:
+def test_database_unwritable_for_another_reason_is_refused(path: Path) -> None:
     path.mkdir()
     with pytest.raises(StoreError, match=r"unable to open.*can be written"):
         Store(path, memory_fallback=True)

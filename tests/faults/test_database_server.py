@@ -85,7 +85,7 @@ def rows(store: Database, table: type[Base]) -> list[str]:
         return sorted(map(repr, session.execute(select(table.__table__))))
 
 
-def test_a_station_goes_on_without_its_database_and_brings_it_up_to_date_afterwards(
+def test_station_continues_without_its_database_and_updates_it_afterwards(
     served: Served, server: DatabaseServer, address: ServerAddress, tmp_path: Path
 ) -> None:
     station, browser, unit, data, _ = served
@@ -141,7 +141,7 @@ def require_all(address: ServerAddress, data: Path, scratch: Path) -> None:
             assert by_log <= set(session.scalars(select(AuditEntry.entry_id)))
 
 
-def test_what_a_killed_station_could_not_write_is_projected_from_the_log(
+def test_rows_missing_after_a_kill_are_projected_from_the_log(
     served: Served, server: DatabaseServer, address: ServerAddress, tmp_path: Path
 ) -> None:
     station, browser, unit, data, flags = served
@@ -165,7 +165,7 @@ def test_what_a_killed_station_could_not_write_is_projected_from_the_log(
         assert rows(store, AlarmTransition)
 
 
-def test_what_has_no_room_in_the_queue_is_missing_until_it_is_projected_again(
+def test_rows_beyond_the_queue_are_missing_until_projected_again(
     server: DatabaseServer,
     address: ServerAddress,
     tmp_path: Path,
@@ -216,7 +216,7 @@ def others(server: DatabaseServer) -> str:
         ("another text", "ENCODING 'UTF8'"),
     ],
 )
-def test_what_cannot_be_used_is_refused_in_a_sentence_without_the_password(
+def test_unusable_server_is_refused_without_naming_the_password(
     server: DatabaseServer, tmp_path: Path, others: str, setting: str, reason: str
 ) -> None:
     address = server.new_database(tmp_path)
@@ -244,7 +244,7 @@ def test_what_cannot_be_used_is_refused_in_a_sentence_without_the_password(
     assert "guessed" not in str(refused.value)
 
 
-def test_a_server_that_is_not_there_is_stated_at_the_start(tmp_path: Path) -> None:
+def test_missing_server_is_reported_at_the_start(tmp_path: Path) -> None:
     address = ServerAddress(f"postgresql+psycopg://fire@/muster?host={tmp_path}")
     with pytest.raises(DatabaseAwayError, match=r"does not answer.*see address, user"):
         ServerStore(address)
@@ -263,7 +263,7 @@ def test_two_stations_do_not_share_a_database(
     ServerStore(address, is_station=True).close()
 
 
-def test_a_full_disk_of_the_server_is_stated_and_nothing_is_lost(
+def test_full_disk_of_the_server_is_reported_and_loses_nothing(
     address: ServerAddress, server: DatabaseServer
 ) -> None:
     """A trigger refuses with the code and the words of a server whose disk is full."""

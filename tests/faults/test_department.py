@@ -20,7 +20,7 @@ FAULT_S = 4.0
 pytestmark = pytest.mark.usefixtures("links")
 
 
-def test_faults_of_links_and_kills_of_all_sides_lose_nothing_and_repeat_nothing(
+def test_link_faults_and_kills_lose_and_repeat_no_event(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with database_server() as server, ExitStack() as closing:

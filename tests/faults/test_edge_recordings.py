@@ -123,7 +123,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("spoil", "reason"), FAULTS)
-def test_the_agent_goes_on_to_the_end_and_says_what_was_wrong(spoil, reason, tmp_path):
+def test_agent_continues_to_the_end_and_reports_faults(spoil, reason, tmp_path):
     rows = walk()
     spoil(rows)
     messages = run_agent_on(rows, tmp_path)

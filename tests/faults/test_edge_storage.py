@@ -123,7 +123,7 @@ def set_room(running: Running, pages: int) -> None:
         journal._writer.execute(f"PRAGMA max_page_count = {pages}")
 
 
-def test_a_full_disk_under_the_journal(running):
+def test_full_disk_of_the_journal_is_reported_once(running):
     set_room(running, 1)
     until(running.station.faults)
     before = running.station.count(Position)
@@ -139,7 +139,7 @@ def test_a_full_disk_under_the_journal(running):
     assert running.parts.journal_writer.never_saved == 0
 
 
-def test_what_a_full_disk_cost_is_stated_with_the_heartbeat(running, monkeypatch):
+def test_messages_lost_on_a_full_disk_are_reported_in_the_heartbeat(running, monkeypatch):
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
     set_room(running, 1)
     until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
@@ -147,7 +147,7 @@ def test_what_a_full_disk_cost_is_stated_with_the_heartbeat(running, monkeypatch
     assert running.station.heartbeats()[-1].given_up == 0
 
 
-def test_a_full_disk_under_the_black_box(running, monkeypatch):
+def test_full_disk_of_the_black_box_is_reported_once(running, monkeypatch):
     def full(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -161,7 +161,7 @@ def test_a_full_disk_under_the_black_box(running, monkeypatch):
     assert len(running.station.faults()) == 1
 
 
-def test_a_fault_of_one_hides_none_of_the_other(running, monkeypatch):
+def test_faults_of_journal_and_black_box_are_reported_separately(running, monkeypatch):
     """Somebody may have dealt with the first, and not know of the second."""
 
     def full(*_: object) -> int:
@@ -176,7 +176,7 @@ def test_a_fault_of_one_hides_none_of_the_other(running, monkeypatch):
         set_room(running, 1_000_000)
 
 
-def test_a_journal_that_is_damaged_while_it_is_written(running, monkeypatch):
+def test_journal_damaged_during_writing_is_replaced(running, monkeypatch):
     journal = running.parts.journal
     insert, had = journal._insert, journal.last_seq
 
@@ -251,7 +251,7 @@ def test_a_unit_that_is_started_with_a_full_disk_is_received(
         running.end()
 
 
-def test_a_disk_that_is_full_of_old_recordings_takes_what_a_person_is_shown(disk: Path) -> None:
+def test_disk_full_of_old_recordings_keeps_the_journal(disk: Path) -> None:
     """Though the black box may have more than the whole of this disk."""
     started_before(disk)
     (recorded,) = (disk / "u1" / "black_box").iterdir()
@@ -275,7 +275,7 @@ def test_a_disk_that_is_full_of_old_recordings_takes_what_a_person_is_shown(disk
         running.end()
 
 
-def test_a_unit_whose_disk_can_only_be_read_is_received(disk: Path) -> None:
+def test_unit_with_a_read_only_disk_is_received(disk: Path) -> None:
     started_before(disk)
     remount(disk, "ro")
     running = Running(disk)
@@ -285,7 +285,7 @@ def test_a_unit_whose_disk_can_only_be_read_is_received(disk: Path) -> None:
         running.end()
 
 
-def test_a_unit_whose_disk_hangs_is_received(freezing_disk: Path) -> None:
+def test_unit_with_a_hanging_disk_is_received(freezing_disk: Path) -> None:
     running = Running(freezing_disk)
     freeze(freezing_disk)
     try:
@@ -296,7 +296,7 @@ def test_a_unit_whose_disk_hangs_is_received(freezing_disk: Path) -> None:
         running.end()
 
 
-def test_a_unit_whose_disk_hangs_stops_when_it_is_reported_to(
+def test_unit_with_a_hanging_disk_stops_on_request(
     freezing_disk: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Its service would kill it in the end, and the station would never hear that it was meant."""
@@ -310,7 +310,7 @@ def test_a_unit_whose_disk_hangs_stops_when_it_is_reported_to(
     assert any("messages are not kept" in one for one in reported)
 
 
-def test_what_waits_at_the_end_for_a_disk_that_comes_back_is_kept(freezing_disk: Path) -> None:
+def test_messages_waiting_for_the_disk_at_shutdown_are_saved(freezing_disk: Path) -> None:
     running = Running(freezing_disk)
     with frozen(freezing_disk):
         time.sleep(1.5)

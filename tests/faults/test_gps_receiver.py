@@ -93,7 +93,7 @@ def receive() -> Iterator[Ears]:
         device.close()
 
 
-def test_half_lines_and_noise_cost_what_they_hit(receive: Ears) -> None:
+def test_incomplete_lines_and_noise_lose_only_the_affected_sentences(receive: Ears) -> None:
     """Eleven bursts: half of the first one, one of which a byte is wrong, noise between."""
     first, *others = map(burst, MANY[:11])
     others[4] = others[4].replace(b"5742", b"5743", 1)
@@ -108,7 +108,7 @@ def test_half_lines_and_noise_cost_what_they_hit(receive: Ears) -> None:
     assert received.faults == []
 
 
-def test_a_line_that_loses_much_is_reported(receive: Ears) -> None:
+def test_line_with_many_errors_is_reported(receive: Ears) -> None:
     def stated() -> Iterator[bytes]:
         for reported in MANY:
             time.sleep(0.05)  # a second, at the hasty clock's pace
@@ -120,7 +120,7 @@ def test_a_line_that_loses_much_is_reported(receive: Ears) -> None:
     )
 
 
-def test_a_receiver_that_is_not_there_yet_is_waited_for(receive: Ears) -> None:
+def test_missing_receiver_is_awaited(receive: Ears) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     received = receive(f"gpsd://127.0.0.1:{port}")
@@ -131,7 +131,7 @@ def test_a_receiver_that_is_not_there_yet_is_waited_for(receive: Ears) -> None:
     assert len([fault for fault in received.faults if "refused" in fault]) == 1
 
 
-def test_gpsd_that_is_restarted_is_reported_and_taken_up_again(receive: Ears) -> None:
+def test_restart_of_gpsd_is_reported_and_reconnected(receive: Ears) -> None:
     sessions = [gpsd_report(MANY[0])], [gpsd_report(MANY[5])]
     server = receive.pretend(GpsdServer(*sessions))
     received = receive(f"gpsd:{server.source}")
@@ -187,7 +187,7 @@ def test_gpsd_without_a_receiver_is_reported(
     received.has(1)
 
 
-def test_what_is_no_gpsd_is_reported(receive: Ears) -> None:
+def test_server_that_is_no_gpsd_is_reported(receive: Ears) -> None:
     server = receive.pretend(TcpDevice([b"SSH-2.0-OpenSSH_9.6\r\n"]))
     receive(f"gpsd://127.0.0.1:{server.port}").receives("is this the port of gpsd")
     with socket.create_server(("127.0.0.1", 0)) as silent:
@@ -197,12 +197,12 @@ def test_what_is_no_gpsd_is_reported(receive: Ears) -> None:
         )
 
 
-def test_another_speed_than_stated_is_garbage_on_a_serial_line(receive: Ears) -> None:
+def test_wrong_baud_rate_is_reported_as_unreadable(receive: Ears) -> None:
     device = receive.pretend(PtyDevice([NOISE]))
     receive(f"nmea:{device.source}?baud=38400", hasty=True).receives("?baud= right")
 
 
-def test_a_cable_that_is_pulled_is_reported(receive: Ears) -> None:
+def test_unplugged_cable_is_reported(receive: Ears) -> None:
     device = receive.pretend(PtyDevice(map(burst, MANY[:3])))
     received = receive(f"nmea:{device.source}")
     received.has(3)
@@ -210,7 +210,7 @@ def test_a_cable_that_is_pulled_is_reported(receive: Ears) -> None:
     received.receives("no fixes: it went away; is the cable in")
 
 
-def test_a_receiver_is_plugged_in_again(receive: Ears, tmp_path: Path) -> None:
+def test_replugged_receiver_is_reopened(receive: Ears, tmp_path: Path) -> None:
     """As udev names it: the same name for another terminal."""
     name = tmp_path / "gps"
     received = None
@@ -224,7 +224,7 @@ def test_a_receiver_is_plugged_in_again(receive: Ears, tmp_path: Path) -> None:
         device.close()
 
 
-def test_what_is_no_serial_port_is_reported(receive: Ears, tmp_path: Path) -> None:
+def test_device_that_is_no_serial_port_is_reported(receive: Ears, tmp_path: Path) -> None:
     plain = tmp_path / "file"
     plain.write_bytes(burst(HERE))
     receive(f"nmea:{plain}").receives("it is no serial port")

@@ -111,7 +111,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
         (say_16_mb, ""),
     ],
 )
-def test_others_are_received_and_the_station_does_not_grow(
+def test_flood_by_a_unit_affects_neither_others_nor_the_stations_memory(
     scene: Scene, say: Say, reported: str
 ) -> None:
     before_mb = scene.station.memory_mb()
@@ -141,7 +141,7 @@ def maydays(scene: Scene) -> int:
     return sum(f"/{EVIL}/" in key and "alert/" in key for _, key, _ in read_log(scene.station.log))
 
 
-def test_a_journal_that_never_ends_fills_no_disk_and_is_reported(scene: Scene) -> None:
+def test_endless_journal_is_limited_and_reported(scene: Scene) -> None:
     boot_id = secrets.randbits(63)
     serving = scene.evil.serve(f"muster/v1/{EVIL}/journal/**", mayday_journal(EVIL, boot_id))
     token = scene.evil.declare_alive(alive_key(EVIL))  # who has a link is asked
@@ -177,7 +177,7 @@ def log_mb(scene: Scene) -> float:
     ],
     ids=["urgent", "ordinary"],
 )
-def test_large_messages_of_a_journal_fill_no_disk_and_are_reported(
+def test_large_messages_of_a_journal_are_limited_and_reported(
     scene: Scene, name: str, journal_of: Callable[[str, int], QueryHandler], most_mb: float
 ) -> None:
     before_mb, before_ns, began_s = log_mb(scene), time.time_ns(), time.monotonic()
@@ -215,7 +215,7 @@ def delays_s(scene: Scene, since_ns: int) -> list[float]:
     ]
 
 
-def test_others_are_received_at_once_beside_a_token_that_comes_and_goes(scene: Scene) -> None:
+def test_other_units_are_received_at_once_beside_a_flapping_token(scene: Scene) -> None:
     """Last: afterwards the unit is shut out."""
     before_mb, began_ns = scene.station.memory_mb(), time.time_ns()
     over = Event()

@@ -51,7 +51,7 @@ def kill_a_writer(path: Path, after_s: float) -> tuple[int, int]:
     return boot_id, max(whole, default=0)
 
 
-def test_what_was_safe_is_there_and_no_name_is_used_twice(tmp_path):
+def test_saved_messages_survive_a_kill_and_boot_ids_are_unique(tmp_path):
     path = tmp_path / "journal.sqlite"
     rng = random.Random(4)
     safe: dict[int, int] = {}

@@ -107,7 +107,7 @@ def lost(site: Site) -> int:
     return MESSAGES - len(site.logged())
 
 
-def test_segments_that_were_cut_emptied_or_exchanged(site: Site, tmp_path: Path) -> None:
+def test_truncated_emptied_or_exchanged_segments_are_reported(site: Site, tmp_path: Path) -> None:
     cut, zeroed, exchanged, gone, *_ = with_messages(site)
     with SegmentReader(cut) as reader:
         os.truncate(cut, reader._contents.chunks[-1].offset + 20)
@@ -127,7 +127,7 @@ def test_segments_that_were_cut_emptied_or_exchanged(site: Site, tmp_path: Path)
     assert gone.name in site.problems(), "it is said as long as it is so"
 
 
-def test_a_log_of_which_nothing_is_left(site: Site) -> None:
+def test_missing_log_is_reported_and_backfilled(site: Site) -> None:
     shutil.rmtree(site.data / "log")
     site.start()
     assert "is missing" in site.problems()

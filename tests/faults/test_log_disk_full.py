@@ -53,7 +53,7 @@ def expected(seconds: range) -> list[bytes]:
     return [b"%d.%d" % (second, tenth) * 50 for second in seconds for tenth in range(10)]
 
 
-def test_what_waited_for_the_disk_goes_to_its_place_when_there_is_room(tmp_path: Path) -> None:
+def test_waiting_records_are_written_in_order_when_there_is_room(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     write_seconds(writer, range(20))
     assert writer.problem == ""
@@ -69,7 +69,7 @@ def test_what_waited_for_the_disk_goes_to_its_place_when_there_is_room(tmp_path:
     assert writer.lost == 0
 
 
-def test_segments_that_end_on_a_full_disk_are_whole_later(tmp_path: Path) -> None:
+def test_segments_that_end_on_a_full_disk_are_completed_later(tmp_path: Path) -> None:
     closed: list[SegmentInfo] = []
     writer = SegmentWriter(tmp_path, SegmentPolicy(segment_s=10.0), closed.append)
     with files_of_at_most(0):
@@ -96,7 +96,7 @@ def test_records_beyond_what_memory_may_hold_are_refused_and_counted(tmp_path: P
     assert kept[:accepted] == expected(range(100))[:accepted]
 
 
-def test_closing_on_a_full_disk_says_what_is_left_behind(tmp_path: Path) -> None:
+def test_closing_on_a_full_disk_reports_the_lost_records(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     with files_of_at_most(0):
         write_seconds(writer, range(3))
@@ -104,7 +104,7 @@ def test_closing_on_a_full_disk_says_what_is_left_behind(tmp_path: Path) -> None
     assert writer.problem
 
 
-def test_what_a_recorder_lost_is_stated_until_it_starts_anew(tmp_path: Path) -> None:
+def test_lost_records_are_reported_until_the_recorder_restarts(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=2000))
     with files_of_at_most(0):
         for number in range(100):
@@ -140,7 +140,7 @@ def north_of_one_m(station: LiveStation) -> float | None:
     return None if shown.position is None else shown.position.north_m
 
 
-def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_when_there_is_room(
+def test_messages_refused_by_the_log_are_backfilled_when_there_is_room(
     tmp_path: Path, make_position: Callable[..., Position]
 ) -> None:
     unit, boot, policy = "FF-01", 0xB007, SegmentPolicy(waiting_bytes_max=1_000_000)
@@ -182,7 +182,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
     assert keys.count(POSITION.key(unit)) + backfilled == 99
 
 
-def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_safe(
+def test_station_started_on_a_full_disk_acknowledges_nothing(
     tmp_path: Path, make_position: Callable[..., Position]
 ) -> None:
     unit, boot = "FF-01", 0xB007
@@ -207,7 +207,7 @@ def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_saf
         assert list(again.pipeline.state.units[unit].boots[0].seen.runs()) == [Run(1, 1)]
 
 
-def test_what_people_do_is_kept_where_the_log_takes_nothing_else(
+def test_operator_actions_are_logged_on_a_nearly_full_disk(
     tmp_path: Path, make_position: Callable[..., Position]
 ) -> None:
     """No unit's journal has it: it would be gone when the station starts again."""
@@ -226,7 +226,7 @@ def test_what_people_do_is_kept_where_the_log_takes_nothing_else(
         assert any(alarm.rule == "mayday" for alarm in again.snapshot().alarms)
 
 
-def test_what_people_do_and_the_log_cannot_take_is_refused_but_not_an_order(tmp_path: Path) -> None:
+def test_unloggable_operator_actions_are_refused_except_orders(tmp_path: Path) -> None:
     with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
         with files_of_at_most(0):
             until_it_refuses(station)
@@ -254,7 +254,7 @@ def until_it_refuses(station: LiveStation) -> None:
         time.sleep(0.1)
 
 
-def test_a_segment_that_cannot_be_written_anew_leaves_the_room_to_the_log(tmp_path: Path) -> None:
+def test_segment_that_cannot_be_rewritten_leaves_no_temporary_file(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     write_seconds(writer, range(20))
     writer.close()
@@ -266,7 +266,7 @@ def test_a_segment_that_cannot_be_written_anew_leaves_the_room_to_the_log(tmp_pa
     assert path.read_bytes() == before
 
 
-def test_a_state_that_cannot_be_saved_leaves_the_room_to_the_log(tmp_path: Path) -> None:
+def test_checkpoint_that_cannot_be_saved_leaves_no_temporary_file(tmp_path: Path) -> None:
     checkpoints = Checkpoints(tmp_path)
     checkpoints.save(100, 1, make_pipeline().checkpoint())
     (saved,) = tmp_path.iterdir()
@@ -278,7 +278,7 @@ def test_a_state_that_cannot_be_saved_leaves_the_room_to_the_log(tmp_path: Path)
     assert latest.t_ns == 100
 
 
-def test_a_disk_that_was_nearly_full_before_is_ordered_to_be_full_in_the_end(
+def test_full_disk_is_reported_also_after_a_nearly_full_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who was told that there is little room, and can wait with that, must hear of the rest."""

@@ -68,9 +68,7 @@ def console(tmp_path: Path) -> Iterator[Browser]:
         station.stop()
 
 
-def test_strangers_keep_nobody_from_acting_looking_and_logging_in(
-    console: Browser, tmp_path: Path
-) -> None:
+def test_login_flood_delays_no_user(console: Browser, tmp_path: Path) -> None:
     port = httpx.URL(console.address).port or 0
     times_longer = max(1.0, median(asked_times_s(console)) / QUIET_MEDIAN_S)
     for name, (flood, places) in FLOODS.items():

@@ -57,11 +57,11 @@ def datagrams() -> Iterator[Datagrams]:
         yield Datagrams(LossyLink(SEED, ended), ended)
 
 
-def test_a_clean_link_brings_all_in_order(datagrams: Datagrams) -> None:
+def test_clean_link_delivers_everything_in_order(datagrams: Datagrams) -> None:
     assert datagrams.arrived(100) == list(range(100))
 
 
-def test_a_dark_link_brings_nothing_until_it_is_clean_again(datagrams: Datagrams) -> None:
+def test_dark_link_delivers_nothing_until_it_is_clean(datagrams: Datagrams) -> None:
     datagrams.link.set(DARK)
     assert datagrams.arrived(20) == []
     datagrams.link.set(CLEAN)
@@ -73,7 +73,7 @@ def test_each_direction_has_its_own_conditions(datagrams: Datagrams) -> None:
     assert datagrams.arrived(20) == list(range(20))
 
 
-def test_loss_and_jitter_are_those_asked_for(datagrams: Datagrams) -> None:
+def test_loss_and_jitter_are_as_configured(datagrams: Datagrams) -> None:
     datagrams.link.set(Conditions(loss=0.4, jitter_s=0.3))
     arrived = datagrams.arrived(1000)
     assert 0.55 < len(arrived) / 1000 < 0.65
@@ -81,7 +81,7 @@ def test_loss_and_jitter_are_those_asked_for(datagrams: Datagrams) -> None:
     assert len(set(arrived)) == len(arrived)
 
 
-def test_a_thin_link_carries_its_rate_and_throws_away_what_it_cannot_queue(
+def test_thin_link_limits_the_rate_and_drops_the_excess(
     datagrams: Datagrams,
 ) -> None:
     datagrams.link.set(Conditions(rate_bps=80_000.0))

@@ -148,7 +148,7 @@ def any_boot(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.timeout(1800)  # a million, beside all other tests
-def test_the_station_keeps_counts_and_shows_whatever_is_stated(tmp_path: Path) -> None:
+def test_mutated_messages_are_logged_and_counted(tmp_path: Path) -> None:
     log, screen, pipeline = Written(keeps=False), Screen(), make_pipeline()
     feed = say(COUNT, log, screen, pipeline, tmp_path)
     state = pipeline.state
@@ -160,7 +160,7 @@ def test_the_station_keeps_counts_and_shows_whatever_is_stated(tmp_path: Path) -
     assert health.undecodable == state.counts.undecodable == log.unreadable > 0
 
 
-def test_what_was_stated_is_decided_the_same_in_a_replay(tmp_path: Path) -> None:
+def test_replay_of_mutated_messages_makes_the_same_decisions(tmp_path: Path) -> None:
     log = Written(keeps=True)
     say(FEWER, log, Screen(), make_pipeline(), tmp_path)
     assert len(log.records) > FEWER / 2
@@ -185,7 +185,7 @@ def last_health(screen: Screen) -> HealthView:
     return next(delta.health for delta in reversed(screen.deltas) if delta.health is not None)
 
 
-def test_an_agent_answers_whatever_command_it_can_read_and_counts_the_rest() -> None:
+def test_agent_answers_readable_commands_and_counts_the_rest() -> None:
     chance = random.Random(5)
     payloads = RandomPayloads(chance)
     desk = CommandHandler(Stamper("FF-01", 1, ManualClock()), lambda _: None)
@@ -204,7 +204,7 @@ def test_an_agent_answers_whatever_command_it_can_read_and_counts_the_rest() -> 
     assert unreadable > 0
 
 
-def test_an_agent_that_tracks_for_another_gets_finite_samples_or_none() -> None:
+def test_mutated_raw_batch_gives_finite_samples_or_none() -> None:
     chance = random.Random(6)
     payloads = RandomPayloads(chance)
     for number in range(COUNT // 8):
@@ -216,7 +216,7 @@ def test_an_agent_that_tracks_for_another_gets_finite_samples_or_none() -> None:
         assert isinstance(raw, RawImu)
 
 
-def test_no_answer_breaks_the_clock() -> None:
+def test_mutated_clock_answer_leaves_a_valid_estimate() -> None:
     chance, machine = random.Random(7), ManualClock()
     clock = StationClock(machine)
     good = ClockAnswer(10**18, 10**18 + 1).to_bytes()
@@ -227,7 +227,7 @@ def test_no_answer_breaks_the_clock() -> None:
         assert estimate is None or estimate.std_s >= 0.0
 
 
-def test_no_question_breaks_the_journal(tmp_path: Path) -> None:
+def test_mutated_query_leaves_the_journal_intact(tmp_path: Path) -> None:
     chance = random.Random(8)
     with closing(Journal(tmp_path / "journal.sqlite", lambda: 1, 0, 10**7)) as journal:
         server = JournalServer("FF-01", journal)
@@ -240,7 +240,7 @@ def test_no_question_breaks_the_journal(tmp_path: Path) -> None:
         assert JournalIndex.from_bytes(index).boots == ()
 
 
-def test_no_reply_breaks_what_is_fetched() -> None:
+def test_mutated_reply_leaves_the_backfill_intact() -> None:
     chance = random.Random(9)
     entries = tuple(JournalEntry(seq, POSITION.suffix, b"x" * 20) for seq in range(1, 4))
     chunk = JournalChunk(7, 1, 3, entries).to_bytes()

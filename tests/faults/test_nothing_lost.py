@@ -65,7 +65,7 @@ def has_logged(data: Path, count: int) -> bool:
     return len(logged(data)[0]) >= count
 
 
-def test_every_message_is_in_the_log_once_anyone_was_killed(tmp_path: Path) -> None:
+def test_every_message_is_in_the_log_once_after_kills(tmp_path: Path) -> None:
     chance = random.Random(11)
     data, bus = tmp_path / "station", f"tcp/127.0.0.1:{free_port()}"
     serve = ["serve", "--data", str(data), "--listen", bus, "--insecure"]

@@ -35,7 +35,7 @@ def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[StationProcess
         yield stack.enter_context(station_process(folder, address, launch=launch_loaded))
 
 
-def test_thirty_photographs_at_once_are_taken_a_few_at_a_time(station: StationProcess) -> None:
+def test_simultaneous_photographs_are_decoded_a_few_at_a_time(station: StationProcess) -> None:
     before_mb = peak_memory_mb(station.pid)
     with photographs_at_once(station.api, PHOTOGRAPHS) as answered:
         for number in range(50):
@@ -44,7 +44,7 @@ def test_thirty_photographs_at_once_are_taken_a_few_at_a_time(station: StationPr
     assert peak_memory_mb(station.pid) < before_mb + GROWN_MB
 
 
-def test_users_who_send_slowly_delay_no_picture_of_others(station: StationProcess) -> None:
+def test_slow_uploads_delay_no_picture_of_other_users(station: StationProcess) -> None:
     """Four users with more uploads than are read at once, each as fast as no deadline is missed."""
     person_id = station.api.post("/people", {"name": "Ada"})["person_id"]
     path = f"/people/{person_id}/photo"
@@ -72,7 +72,7 @@ def test_a_map_of_50_megapixels_is_decoded_at_a_part_of_its_size(station: Statio
     assert peak_memory_mb(station.pid) < before_mb + GROWN_BY_MAP_MB
 
 
-def test_a_picture_that_is_larger_than_it_looks_is_refused(station: StationProcess) -> None:
+def test_decompression_bomb_is_refused(station: StationProcess) -> None:
     person_id = station.api.post("/people", {"name": "Mallory"})["person_id"]
     before_mb = peak_memory_mb(station.pid)
     for path in (f"/people/{person_id}/photo", MAP):

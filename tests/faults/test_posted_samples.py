@@ -98,7 +98,7 @@ def moved_m(points: list[dict[str, Any]]) -> float:
     return max((dist(places[0], place) for place in places), default=0.0)
 
 
-def test_it_moves_on_the_map_and_nothing_that_was_acknowledged_is_lost(tmp_path: Path) -> None:
+def test_acknowledged_samples_are_tracked_and_survive_a_kill(tmp_path: Path) -> None:
     address = f"tcp/127.0.0.1:{free_port()}"
     data, messages = tmp_path / "station", walk()
     data.mkdir()

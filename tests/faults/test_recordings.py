@@ -17,9 +17,7 @@ from shared.messages.recording import RecordingPiece
 from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
-def test_all_of_it_is_the_unit_s_to_the_last_bit_and_replays(
-    unit: RecordedUnit, tmp_path: Path
-) -> None:
+def test_pulled_recording_is_identical_and_replays(unit: RecordedUnit, tmp_path: Path) -> None:
     fetch = finish(begin(unit, tmp_path))
     assert (fetch.state, fetch.problem) == (TransferState.DONE, "")
     assert fetch.done_bytes == fetch.total_bytes > 0
@@ -32,9 +30,7 @@ def test_all_of_it_is_the_unit_s_to_the_last_bit_and_replays(
     assert batches == sum(1 for _ in BlackBoxSource(unit.boot).batches()) > 0
 
 
-def test_the_hashes_stand_beside_it_as_the_usual_tool_reads_them(
-    unit: RecordedUnit, tmp_path: Path
-) -> None:
+def test_hashes_are_verified_by_sha256sum(unit: RecordedUnit, tmp_path: Path) -> None:
     finish(begin(unit, tmp_path, unit.window(0.0, 500.0)))
     finish(begin(unit, tmp_path, unit.window(3000.0, 3500.0)))
     checked = subprocess.run(
@@ -47,7 +43,7 @@ def test_the_hashes_stand_beside_it_as_the_usual_tool_reads_them(
     assert checked.stdout.count(": OK") == len(list((tmp_path / U).rglob("*.mcap"))) + 1
 
 
-def test_of_a_window_only_its_segments_are_pulled(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_only_segments_of_the_window_are_pulled(unit: RecordedUnit, tmp_path: Path) -> None:
     fetch = finish(begin(unit, tmp_path, unit.window(1000.0, 1300.0)))
     pulled = sorted(one.name for one in (tmp_path / U / unit.boot.name).iterdir())
     assert 3 <= len(pulled) <= 5
@@ -55,7 +51,7 @@ def test_of_a_window_only_its_segments_are_pulled(unit: RecordedUnit, tmp_path: 
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_station_that_is_killed_again_and_again_asks_for_no_byte_twice(
+def test_repeatedly_killed_station_requests_no_byte_twice(
     unit: RecordedUnit, tmp_path: Path, seed: int
 ) -> None:
     chance = random.Random(seed)
@@ -78,7 +74,7 @@ def test_a_station_that_is_killed_again_and_again_asks_for_no_byte_twice(
     assert sum(length for _, length in given) == fetch.total_bytes
 
 
-def test_a_unit_that_goes_away_is_waited_for(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_transfer_waits_for_an_absent_unit(unit: RecordedUnit, tmp_path: Path) -> None:
     fetch = begin(unit, tmp_path)
     for _ in range(15):
         fetch.step()
@@ -93,7 +89,7 @@ def test_a_unit_that_goes_away_is_waited_for(unit: RecordedUnit, tmp_path: Path)
     assert fetch.done_bytes > came
 
 
-def test_flipped_bits_on_the_way_are_asked_for_again(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_corrupted_pieces_are_requested_again(unit: RecordedUnit, tmp_path: Path) -> None:
     chance = random.Random(3)
 
     def flip(what: str, reply: bytes) -> bytes:
@@ -108,9 +104,7 @@ def test_flipped_bits_on_the_way_are_asked_for_again(unit: RecordedUnit, tmp_pat
         assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
 
-def test_what_was_spoiled_on_the_station_s_disk_is_pulled_anew(
-    unit: RecordedUnit, tmp_path: Path
-) -> None:
+def test_files_damaged_at_the_station_are_pulled_again(unit: RecordedUnit, tmp_path: Path) -> None:
     fetch = begin(unit, tmp_path)
     for _ in range(12):
         fetch.step()
@@ -120,7 +114,7 @@ def test_what_was_spoiled_on_the_station_s_disk_is_pulled_anew(
     assert finish(begin(unit, tmp_path)).state is TransferState.DONE
 
 
-def test_a_unit_whose_answers_never_agree_is_given_up_in_words(
+def test_transfer_with_inconsistent_answers_fails_with_a_reason(
     unit: RecordedUnit, tmp_path: Path
 ) -> None:
     def wrong(what: str, reply: bytes) -> bytes:
@@ -149,7 +143,7 @@ def given_up(file: Path) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("before", ["piece", "digest"])
-def test_what_has_come_whole_is_kept_though_the_unit_gives_it_up_meanwhile(
+def test_complete_file_is_kept_after_the_unit_deletes_it(
     unit: RecordedUnit, tmp_path: Path, before: str
 ) -> None:
     """Before it is asked for, it is gone; before its hash is asked for, it is here already."""
@@ -178,7 +172,7 @@ def _step_to(fetch: Transfer, unit: RecordedUnit, what: str) -> bool:
     return size == (0 if what == "piece" else whole)
 
 
-def test_what_was_whole_stays_so_though_what_was_added_is_given_up(
+def test_complete_part_is_kept_when_the_added_part_is_deleted(
     unit: RecordedUnit, tmp_path: Path
 ) -> None:
     first = sorted(unit.boot.iterdir())[0]
@@ -201,7 +195,7 @@ def test_what_was_whole_stays_so_though_what_was_added_is_given_up(
     assert list(tmp_path.rglob("*.part")) == []
 
 
-def test_a_recording_that_grows_is_gone_on_with(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_growing_recording_is_continued(unit: RecordedUnit, tmp_path: Path) -> None:
     first = sorted(unit.boot.iterdir())[0]
     whole = first.read_bytes()
     try:

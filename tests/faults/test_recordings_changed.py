@@ -14,7 +14,7 @@ from tests.rig.changing_recordings import TellingUnit, listed, pulled
 from tests.rig.recorded_unit import U, finish
 
 
-def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path: Path) -> None:
+def test_shortened_file_is_pulled_at_its_current_length(tmp_path: Path) -> None:
     """Its power was lost, and it mended what it had recorded."""
     unit = TellingUnit(a=b"recorded" * 300)
 
@@ -28,7 +28,7 @@ def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path:
     assert pulled(tmp_path) == {"a.mcap": b"recorded" * 128}
 
 
-def test_what_is_begun_again_counts_nothing_twice(
+def test_restarted_transfer_counts_no_file_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files = {"a": b"a" * 500, "b": b"b" * 5000}
@@ -52,7 +52,7 @@ def test_what_is_begun_again_counts_nothing_twice(
     assert fetch.problem.startswith("1 of 2 files came whole")
 
 
-def test_what_was_whole_stays_so_though_the_unit_has_another_now_and_gives_it_up(
+def test_complete_file_is_kept_when_the_unit_replaces_and_deletes_it(
     tmp_path: Path,
 ) -> None:
     unit = TellingUnit(a=b"before" * 20)
@@ -70,7 +70,7 @@ def test_what_was_whole_stays_so_though_the_unit_has_another_now_and_gives_it_up
     assert pulled(tmp_path)["a.mcap"] == b"before" * 20
 
 
-def test_what_was_whole_stays_so_while_more_of_it_is_on_its_way(tmp_path: Path) -> None:
+def test_complete_file_is_kept_during_the_transfer_of_its_extension(tmp_path: Path) -> None:
     """The unit may never come back, and whoever pulls may be killed."""
     unit, before = TellingUnit(a=b"before" * 20), b"before" * 20
     finish(unit.pull(tmp_path))
@@ -87,7 +87,7 @@ def test_what_was_whole_stays_so_while_more_of_it_is_on_its_way(tmp_path: Path) 
     assert sum(unit.pieces) < len(grown) - len(before), "what had come is not asked for again"
 
 
-def test_a_list_of_hashes_that_is_damaged_ends_no_pull(tmp_path: Path) -> None:
+def test_damaged_list_of_hashes_does_not_end_the_transfer(tmp_path: Path) -> None:
     unit = TellingUnit(a=b"all of it")
     finish(unit.pull(tmp_path))
     hashes = tmp_path / U / fetching.HASHES
@@ -98,7 +98,7 @@ def test_a_list_of_hashes_that_is_damaged_ends_no_pull(tmp_path: Path) -> None:
     assert f"{digest}  boot/b.mcap" in hashes.read_text(encoding="utf-8").splitlines()
 
 
-def test_a_unit_that_has_another_file_under_the_name_gives_that(tmp_path: Path) -> None:
+def test_replaced_file_is_pulled_in_its_current_version(tmp_path: Path) -> None:
     unit = TellingUnit(a=b"before" * 20, b=b"before" * 20)
     finish(unit.pull(tmp_path))
     unit.files = {"boot/a.mcap": b"shorter", "boot/b.mcap": b"longer" * 99}
@@ -107,7 +107,7 @@ def test_a_unit_that_has_another_file_under_the_name_gives_that(tmp_path: Path) 
     assert pulled(tmp_path) == {"a.mcap": b"shorter", "b.mcap": b"longer" * 99}
 
 
-def test_what_is_given_up_while_a_pull_waits_is_gone(
+def test_file_deleted_during_a_waiting_transfer_is_reported_as_gone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It asks anew what there is, and is not told of it any more."""
@@ -128,7 +128,7 @@ def test_what_is_given_up_while_a_pull_waits_is_gone(
     assert listed(tmp_path).keys() == {"a.mcap", "c.mcap"}
 
 
-def test_what_has_come_is_listed_with_its_hash_though_the_rest_never_comes(
+def test_received_files_of_a_failed_transfer_are_listed_with_their_hashes(
     tmp_path: Path,
 ) -> None:
     unit = TellingUnit(a=b"half")

@@ -74,7 +74,7 @@ def found(server: RecordingServer, from_s: float) -> list[str]:
 
 @pytest.mark.parametrize("began_ns", [60 * NS_PER_S, 4_102_444_800 * NS_PER_S])
 @pytest.mark.parametrize("set_at_s", [400.0, -1.0], ids=["set right", "never set"])
-def test_a_window_is_found_whatever_the_clock_stated_when(
+def test_window_is_found_after_changes_of_the_clock(
     tmp_path: Path, began_ns: int, set_at_s: float
 ) -> None:
     folder, machine = UnitDataFolder(tmp_path), Machine(utc_ns=began_ns)
@@ -94,9 +94,7 @@ def test_a_window_is_found_whatever_the_clock_stated_when(
     folder.close()
 
 
-def test_of_boots_that_ended_long_before_nothing_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_earlier_boots_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The end of one that was switched off costs reading it, and the station waits five seconds."""
     read: list[Path] = []
 
@@ -120,7 +118,7 @@ def test_of_boots_that_ended_long_before_nothing_is_read(
     folder.close()
 
 
-def test_the_oldest_goes_first_whatever_its_date(tmp_path: Path) -> None:
+def test_oldest_recording_is_deleted_first_independent_of_its_date(tmp_path: Path) -> None:
     folder = UnitDataFolder(tmp_path)
     for boot, began_s in enumerate((4_102_444_800, 60)):  # first of all a clock in 2100
         machine = Machine(utc_ns=began_s * NS_PER_S)

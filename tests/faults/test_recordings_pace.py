@@ -14,7 +14,7 @@ from tests.rig.recorded_unit import U, finish
 
 
 @pytest.mark.parametrize(("others_s", "link_s", "grows"), [(20.0, 0.0, True), (0.0, 20.0, False)])
-def test_what_other_units_take_is_no_time_of_this_ones_link(
+def test_time_for_other_units_does_not_reduce_the_piece_size(
     tmp_path: Path, others_s: float, link_s: float, grows: bool
 ) -> None:
     """One that is out of reach may take seconds of every round."""
@@ -28,7 +28,7 @@ def test_what_other_units_take_is_no_time_of_this_ones_link(
     assert (unit.pieces[-1] > 10 * unit.pieces[0]) == grows
 
 
-def test_a_link_that_gets_thin_is_asked_for_as_little_as_it_carries(tmp_path: Path) -> None:
+def test_piece_size_follows_a_thinner_link(tmp_path: Path) -> None:
     """What it cannot carry in time is not asked for again and again."""
     content = random.Random(1).randbytes(300_000)
     unit, carried_bytes = TellingUnit(a=content), len(content)
@@ -51,7 +51,7 @@ def test_a_link_that_gets_thin_is_asked_for_as_little_as_it_carries(tmp_path: Pa
     assert pulled(tmp_path) == {"a.mcap": content}
 
 
-def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_path: Path) -> None:
+def test_unit_with_short_answers_is_asked_with_pauses(tmp_path: Path) -> None:
     unit = TellingUnit(a=b"all of it")
 
     def lie(question: str) -> None:
@@ -68,7 +68,7 @@ def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_pa
     assert not fetch.state.is_over
 
 
-def test_a_bus_that_fails_ends_no_pull(tmp_path: Path) -> None:
+def test_failure_of_the_bus_does_not_end_the_transfer(tmp_path: Path) -> None:
     unit, failures = TellingUnit(a=b"all of it"), [RuntimeError("can't start new thread")]
 
     def fail_once(_: str) -> None:

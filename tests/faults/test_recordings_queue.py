@@ -18,7 +18,7 @@ def desk(ask: Ask, folder: Path) -> TransferQueue:
     return TransferQueue(ask, folder, SystemClock())
 
 
-def test_a_station_that_is_started_again_goes_on(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_restarted_station_continues_its_transfers(unit: RecordedUnit, tmp_path: Path) -> None:
     unit.linked = False
     with desk(unit.ask, tmp_path) as first:
         first.add("chief", unit.window())
@@ -32,7 +32,7 @@ def test_a_station_that_is_started_again_goes_on(unit: RecordedUnit, tmp_path: P
     assert second.pulls()[0].by == "chief"
 
 
-def test_a_unit_that_is_away_holds_up_no_other(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_absent_unit_delays_no_other_transfer(unit: RecordedUnit, tmp_path: Path) -> None:
     away = TransferRequest("FF-02", 1, 2)
     with desk(unit.ask, tmp_path) as both:
         both.add("chief", away)
@@ -41,7 +41,7 @@ def test_a_unit_that_is_away_holds_up_no_other(unit: RecordedUnit, tmp_path: Pat
         assert both.pulls()[0].state is TransferState.WAITING
 
 
-def test_a_pull_can_be_stopped_and_asked_for_again(unit: RecordedUnit, tmp_path: Path) -> None:
+def test_stopped_transfer_can_be_requested_again(unit: RecordedUnit, tmp_path: Path) -> None:
     unit.linked = False
     with desk(unit.ask, tmp_path) as one:
         pull = one.add("chief", unit.window())

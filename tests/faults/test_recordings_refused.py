@@ -18,7 +18,7 @@ from tests.rig.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
 
 
 @pytest.mark.parametrize(("from_s", "to_s"), [(-900.0, -800.0), (SECONDS + 900, SECONDS + 1900)])
-def test_a_window_without_a_recording_is_stated(
+def test_window_without_a_recording_fails_with_a_reason(
     unit: RecordedUnit, tmp_path: Path, from_s: float, to_s: float
 ) -> None:
     fetch = finish(begin(unit, tmp_path, unit.window(from_s, to_s)))
@@ -47,7 +47,7 @@ def test_a_unit_cannot_name_a_file_outside_its_folder(tmp_path: Path, name: str)
         "piece?path=/etc/passwd;offset=0;length=10",
     ],
 )
-def test_a_station_gets_nothing_but_the_recording(unit: RecordedUnit, question: str) -> None:
+def test_unit_serves_nothing_but_its_recording(unit: RecordedUnit, question: str) -> None:
     answer = unit.ask(U, question)
     assert answer is not None
     piece = RecordingPiece.from_bytes(answer)
@@ -59,14 +59,12 @@ def test_a_station_gets_nothing_but_the_recording(unit: RecordedUnit, question: 
     "question",
     ["piece?path=a", "index?from=x;to=2", "what?", "piece?path=a/b;offset=-1;length=3", "digest?"],
 )
-def test_questions_that_make_no_sense_are_not_answered(unit: RecordedUnit, question: str) -> None:
+def test_invalid_queries_are_not_answered(unit: RecordedUnit, question: str) -> None:
     answer = unit.ask(U, question)
     assert answer is None or RecordingPiece.from_bytes(answer).gone
 
 
-def test_two_pulls_from_one_unit_do_not_write_over_each_other(
-    unit: RecordedUnit, tmp_path: Path
-) -> None:
+def test_second_transfer_from_a_unit_is_refused(unit: RecordedUnit, tmp_path: Path) -> None:
     fetch = begin(unit, tmp_path)
     with pytest.raises(DataFolderInUseError, match="pull"):
         begin(unit, tmp_path)

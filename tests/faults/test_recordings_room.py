@@ -15,7 +15,7 @@ from tests.rig.changing_recordings import TellingUnit
 from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
-def test_a_disk_that_has_no_room_is_stated_before_anything_is_pulled(
+def test_lack_of_disk_space_is_reported_before_the_transfer(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fetch = begin(unit, tmp_path)
@@ -29,7 +29,7 @@ def test_a_disk_that_has_no_room_is_stated_before_anything_is_pulled(
     assert finish(fetch).state is TransferState.DONE
 
 
-def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
+def test_transfer_pauses_when_the_log_needs_the_disk(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fetch = begin(unit, tmp_path)
@@ -49,7 +49,7 @@ def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
         assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
 
-def test_a_disk_that_gets_full_on_the_way_is_stated_and_what_came_is_kept(
+def test_disk_filled_during_the_transfer_is_reported_and_keeps_the_received_part(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fetch = begin(unit, tmp_path)
@@ -67,7 +67,7 @@ def test_a_disk_that_gets_full_on_the_way_is_stated_and_what_came_is_kept(
     assert finish(begin(unit, tmp_path)).state is TransferState.DONE
 
 
-def test_what_is_here_of_other_times_makes_no_room(
+def test_recordings_of_other_times_count_as_no_free_space(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     unit = TellingUnit(old=b"old" * 1000)

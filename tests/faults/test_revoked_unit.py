@@ -52,7 +52,7 @@ def agents(tmp_path: Path, pki: PkiFolder) -> Iterator[dict[str, Agent]]:
         agent.kill()
 
 
-def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
+def test_revoked_unit_is_disconnected_and_the_other_loses_nothing(
     tmp_path: Path, pki: PkiFolder, agents: dict[str, Agent]
 ) -> None:
     (listen,) = pki.registry().connect

@@ -85,7 +85,7 @@ def _end(pki: PkiFolder, own: str, other: str, stack: ExitStack) -> End:
     return end
 
 
-def test_two_routers_that_open_again_at_any_instant_link_again(ends: tuple[End, End]) -> None:
+def test_routers_reopened_at_any_instant_link_again(ends: tuple[End, End]) -> None:
     chance = random.Random(SEED)
     first, second = ends
     for number in range(ROUNDS):

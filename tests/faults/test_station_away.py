@@ -50,7 +50,7 @@ def journal(tmp_path: Path, make_position: MakePosition) -> Iterator[Journal]:
         yield journal
 
 
-def test_it_has_all_of_it_some_seconds_after_it_is_back(tmp_path: Path, journal: Journal) -> None:
+def test_returned_station_has_all_messages_within_seconds(tmp_path: Path, journal: Journal) -> None:
     """The unit says nothing more, or nothing of it gets through: it only holds its link."""
     data, port = tmp_path / "station", free_port()
     serve = ["serve", "--data", str(data), "--listen", f"tcp/127.0.0.1:{port}"]

@@ -73,7 +73,7 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
         yield Ground(tmp_path, closing)
 
 
-def test_a_clock_that_is_set_in_an_incident_makes_nobody_missing_and_ends_no_login(
+def test_clock_set_during_an_incident_raises_no_link_alarm_and_ends_no_login(
     ground: Ground,
 ) -> None:
     ground.dress()

@@ -48,7 +48,7 @@ def problems(browser: Browser) -> str:
     return "; ".join(browser.call("GET", "/health")["problems"])
 
 
-def test_a_station_starts_on_a_full_disk_and_on_one_that_can_only_be_read(
+def test_station_starts_on_a_full_or_read_only_disk(
     small: SmallDisk, make_position: MakePosition
 ) -> None:
     with small.serve("first.txt") as station:
@@ -81,7 +81,7 @@ def damaged_copies(data: Path) -> list[bytes]:
 
 
 @pytest.mark.parametrize("takes_nothing", [filled, read_only])
-def test_a_damaged_database_on_a_disk_that_takes_nothing_is_made_again_in_memory(
+def test_damaged_database_on_a_full_disk_is_rebuilt_in_memory(
     small: SmallDisk,
     make_position: MakePosition,
     takes_nothing: Callable[[Path], AbstractContextManager[None]],

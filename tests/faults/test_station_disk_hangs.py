@@ -60,7 +60,7 @@ def served(disk: Path, tmp_path: Path, make_position: MakePosition) -> Iterator[
         yield Served(station, browser, unit, data, flags)
 
 
-def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
+def test_station_with_a_hanging_disk_continues_and_loses_nothing(
     disk: Path, served: Served
 ) -> None:
     station, browser, unit, data, _ = served
@@ -93,7 +93,7 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
     assert walk.stated <= set(there)
 
 
-def test_a_station_whose_disk_hangs_ends_when_it_is_ordered_to_and_reports_the_loss(
+def test_station_with_a_hanging_disk_stops_and_reports_the_loss(
     disk: Path, served: Served, tmp_path: Path
 ) -> None:
     """Its service would kill it in the end, and nobody would hear what the log lacks."""

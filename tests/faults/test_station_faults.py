@@ -74,7 +74,7 @@ def test_a_checkpoint_that_cannot_be_saved_is_reported(
         follows(station, make_position, 4.0)
 
 
-def test_a_mistake_in_the_pipeline_costs_one_message(
+def test_error_in_the_pipeline_loses_one_message(
     tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with LiveStation(tmp_path) as station:
@@ -100,7 +100,7 @@ def wait_for_ticks(station: LiveStation) -> None:
 
 
 @pytest.mark.parametrize("refuses", [False, True])
-def test_no_journal_receives_of_what_may_not_be_on_the_disk(
+def test_unsaved_messages_are_not_acknowledged(
     tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch, refuses: bool
 ) -> None:
     """Its unit would forget it; what there is room for in memory only is asked for alerts."""
@@ -117,7 +117,7 @@ def test_no_journal_receives_of_what_may_not_be_on_the_disk(
         until(lambda: U in station.reported)
 
 
-def test_person_is_forgotten_when_what_is_being_saved_is_over(
+def test_erasure_waits_for_the_checkpoint_in_progress(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It has them in it, and would be read at the next start."""
@@ -167,7 +167,7 @@ class Idle:
         pass
 
 
-def test_a_picture_that_cannot_be_drawn_takes_neither_all_the_time_nor_the_disk(
+def test_failing_snapshot_is_retried_without_load_and_logged_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """It is tried again at every turn, for days perhaps."""
@@ -205,7 +205,7 @@ class FailsFor:
         return None
 
 
-def test_a_failing_rule_is_one_alarm_however_often_it_fails() -> None:
+def test_repeatedly_failing_rule_raises_one_alarm() -> None:
     script = Script(StationPipeline((FailsFor(U), *ALARMS), FUSERS[0]))
     script.register(U, "FF-02")
     script.wait(60, lambda: [script.status(U), script.status("FF-02")])

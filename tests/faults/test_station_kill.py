@@ -54,7 +54,7 @@ def log_of(data: Path) -> list[LogRecord]:
     return records
 
 
-def test_what_was_written_and_what_was_promised_outlives_a_kill(tmp_path: Path) -> None:
+def test_written_and_acknowledged_messages_survive_a_kill(tmp_path: Path) -> None:
     chance = random.Random(5)
     data, port = tmp_path / "data", free_port()
     arguments = ["serve", "--data", str(data), "--listen", f"tcp/127.0.0.1:{port}"]
@@ -92,7 +92,7 @@ def test_what_was_written_and_what_was_promised_outlives_a_kill(tmp_path: Path) 
     assert len(list((data / "log").glob("*.torn"))) == KILLS
 
 
-def test_a_folder_in_use_is_stated_in_a_sentence(tmp_path: Path) -> None:
+def test_folder_in_use_is_refused_with_a_reason(tmp_path: Path) -> None:
     arguments = ("serve", "--data", str(tmp_path / "data"), "--insecure")
     first = (*arguments, "--listen", f"tcp/127.0.0.1:{free_port()}", "--http", "127.0.0.1:0")
     with Command(tmp_path / "first.txt", *first) as station:

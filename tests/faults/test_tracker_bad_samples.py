@@ -51,7 +51,7 @@ def test_a_spike_of_a_rate_is_left_out_and_flagged(t_s, axis):
     assert np.linalg.norm(rows.quaternion_nb[-1] - clean.quaternion_nb[-1]) < 2e-3
 
 
-def test_a_rate_that_rises_to_stay_is_no_spike():
+def test_lasting_rise_of_a_rate_is_no_spike():
     t_ns, accel, gyro = copy()
     gyro[index(IN_SWING) :, 2] += 2.0
     assert not flagged(run(t_ns, accel, gyro), Reason.BAD_SAMPLES).any()
@@ -66,14 +66,14 @@ def test_repeated_samples_change_nothing_but_their_own_flag():
     np.testing.assert_allclose(rows.position_n_m[~repeated], run(*copy()).position_n_m, atol=5e-3)
 
 
-def test_what_is_bad_from_the_start_is_not_doubted_for_the_age_of_the_clock():
+def test_bad_first_samples_do_not_inflate_the_uncertainty():
     t_ns, accel, gyro = copy()
     accel[:5] = np.nan
     rows = EskfTracker(WALK.description).push(ImuBatch(t_ns + 10**15, accel, gyro))
     assert np.sqrt(rows.position_cov_m2[:100, 0, 0].max()) < 1.0
 
 
-def test_no_stance_is_degraded_then_lost():
+def test_missing_stances_are_degraded_then_lost():
     """Shaken without a rest: the tracker must not stay confident."""
     noise = np.random.default_rng(3)
     t_ns = np.arange(0, 20 * 200) * 5_000_000
@@ -92,7 +92,7 @@ def test_a_wrong_described_rate_does_no_harm(described_hz):
     assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.3)
 
 
-def test_a_start_on_the_move_finds_its_feet():
+def test_start_in_motion_recovers_after_some_steps():
     first = index(2.3)  # in the first swing
     t_ns, accel, gyro = copy()
     rows = run(t_ns[first:], accel[first:], gyro[first:])
@@ -123,7 +123,7 @@ def test_memory_does_not_grow():
 
 
 @pytest.mark.parametrize("scale", [0.96, 1.07])
-def test_a_wrong_accelerometer_scale_is_mostly_put_right(scale):
+def test_wrong_accelerometer_scale_is_mostly_corrected(scale):
     t_ns, accel, gyro = copy()
     rows = run(t_ns, scale * accel, gyro)
     wrong_m = abs(scale - 1.0) * LENGTH_M

@@ -44,7 +44,7 @@ def test_undeclared_clipping_shows_by_its_plateaus(rate_hz):
     assert not flagged(whole, Reason.GYRO_SATURATED).any()
 
 
-def test_a_full_scale_that_is_passed_was_none():
+def test_exceeded_full_scale_is_discarded():
     t_ns, accel, gyro = copy()
     full_scale = 0.85 * np.abs(gyro).max()
     early = slice(0, index(IN_STANCE))
@@ -54,7 +54,7 @@ def test_a_full_scale_that_is_passed_was_none():
     assert not flagged(rows, Reason.GYRO_SATURATED)[-300:].any()
 
 
-def test_a_gyroscope_that_hides_most_of_a_swing_is_not_stated_endlessly():
+def test_mostly_clipped_gyroscope_has_a_bounded_uncertainty():
     """What a rest shows of its bias then differs from sample to sample."""
     t_ns, accel, gyro = copy()
     rows = run(t_ns, accel, np.clip(gyro, -1.5, 1.5))  # too slow to be taken for a full scale
@@ -62,7 +62,7 @@ def test_a_gyroscope_that_hides_most_of_a_swing_is_not_stated_endlessly():
     assert rows.quality[-1] == Quality.LOST
 
 
-def test_a_lull_in_a_rise_is_no_full_scale():
+def test_short_plateau_in_a_rise_is_no_full_scale():
     t_ns, accel, gyro = copy()
     k = int(np.argmax(np.abs(gyro[:, 1]) > 0.85 * np.abs(gyro).max()))
     gyro[k : k + 4, 1] = gyro[k, 1]  # for once the same to the last bit
@@ -70,7 +70,7 @@ def test_a_lull_in_a_rise_is_no_full_scale():
 
 
 @pytest.mark.parametrize("full_scale", [0.8, 0.85])
-def test_plateaus_that_were_smoothed_show_a_full_scale(full_scale):
+def test_smoothed_plateaus_show_a_full_scale(full_scale):
     """Real sensors filter and rotate what has clipped."""
     t_ns, accel, gyro = copy()
     full_scale *= np.abs(gyro).max()
@@ -120,13 +120,13 @@ def test_an_undeclared_full_scale_of_forces_shows_by_its_plateaus(rate_hz, senso
 
 
 @pytest.mark.parametrize("every", [3, 4])
-def test_forces_that_a_slow_sensor_holds_are_no_full_scale(every):
+def test_forces_held_by_a_slow_sensor_are_no_full_scale(every):
     t_ns, accel, gyro = copy()
     held = accel[np.arange(len(accel)) // every * every]
     assert not flagged(run(t_ns, held, gyro), Reason.ACCEL_SATURATED).any()
 
 
-def test_what_is_found_unreported_is_bridged_and_doubted_as_if_reported():
+def test_detected_clipping_is_handled_as_reported_clipping():
     t_ns, accel, gyro = copy()
     full_scale = 0.75 * np.abs(accel).max()
     clipped = np.clip(accel, -full_scale, full_scale)

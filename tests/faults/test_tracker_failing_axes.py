@@ -20,7 +20,7 @@ ALL = (0, 1, 2)
     [(ALL, ALL), (ALL, ()), ((), ALL), ((0,), ()), ((2,), ()), ((), (1,))],
     ids=["both", "accelerometer", "gyroscope", "accel x", "accel z", "gyro y"],
 )
-def test_what_hangs_mid_swing_is_noticed(accel_axes, gyro_axes):
+def test_axis_stuck_during_a_swing_is_detected(accel_axes, gyro_axes):
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING + 0.05), index(IN_SWING + 0.3)
     accel[first:stop, accel_axes] = accel[first, accel_axes]
@@ -32,7 +32,7 @@ def test_what_hangs_mid_swing_is_noticed(accel_axes, gyro_axes):
     assert off_m < 2.5 * np.sqrt(np.trace(rows.position_cov_m2[-1, :2, :2]))
 
 
-def test_who_is_not_received_of_is_not_known_to_stand():
+def test_missing_samples_are_no_stance():
     """The filter's own time stands still meanwhile."""
     t_ns, accel, gyro = copy()
     first = index(IN_SWING)
@@ -44,7 +44,7 @@ def test_who_is_not_received_of_is_not_known_to_stand():
 
 @pytest.mark.parametrize("value", [0.5, 1.0, np.nan])  # of the highest reading before
 @pytest.mark.parametrize("axis", range(6))
-def test_an_axis_that_fails_for_good_is_doubted_more_and_more(axis, value):
+def test_uncertainty_grows_with_a_permanently_failed_axis(axis, value):
     t_ns, accel, gyro = copy()
     first, noticed = index(IN_SWING), index(IN_SWING + 0.45)
     readings = accel if axis < 3 else gyro
@@ -62,7 +62,7 @@ def test_an_axis_that_fails_for_good_is_doubted_more_and_more(axis, value):
 
 
 @pytest.mark.parametrize("make", [EskfTracker, HuangTracker])
-def test_a_long_failure_gives_every_row_once_however_the_samples_come(make):
+def test_long_failure_gives_every_row_once(make):
     t_ns, accel, gyro = copy()
     accel[index(IN_SWING) : index(IN_SWING + 7.5)] = np.nan
     whole, bits = make(WALK.description), make(WALK.description)
@@ -80,7 +80,7 @@ def test_a_long_failure_gives_every_row_once_however_the_samples_come(make):
 
 
 @pytest.mark.parametrize("axes", [2, (0, 1, 2)])
-def test_what_was_made_to_feel_no_turn_hangs_not(axes):
+def test_simulated_axis_without_rotation_is_not_stuck(axes):
     t_ns, accel, gyro = copy()
     gyro[:, axes] = 0.0
     assert not flagged(run(t_ns, accel, gyro), Reason.BAD_SAMPLES).any()

@@ -22,7 +22,7 @@ from tests.rig.faulty_walk import (
 )
 
 
-def test_stamps_that_go_back_are_left_out():
+def test_backward_time_stamps_are_rejected():
     t_ns, accel, gyro = copy()
     k = index(IN_SWING)
     t_ns[k] = t_ns[k - 3]
@@ -31,7 +31,7 @@ def test_stamps_that_go_back_are_left_out():
     assert reached_m(rows) == pytest.approx(LENGTH_M, abs=0.2)
 
 
-def test_late_stamps_are_put_right():
+def test_late_time_stamps_are_corrected():
     """Stamps of a transport that delivers every fourth sample late, with the next one."""
     t_ns, accel, gyro = copy()
     late = np.arange(100, len(t_ns) - 1, 4)
@@ -41,7 +41,7 @@ def test_late_stamps_are_put_right():
     assert not flagged(rows, Reason.BAD_SAMPLES).any()
 
 
-def test_a_gap_is_flagged_widens_the_uncertainty_and_heals():
+def test_gap_is_flagged_and_increases_the_uncertainty_until_recovery():
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING), index(IN_SWING + 0.4)
     keep = np.r_[0:first, stop : len(t_ns)]
@@ -58,7 +58,7 @@ def test_a_gap_is_flagged_widens_the_uncertainty_and_heals():
 
 
 @pytest.mark.parametrize("begin_s", [IN_SWING - 0.2, IN_SWING, IN_STANCE])
-def test_a_hole_shorter_than_a_swing_is_bridged(begin_s):
+def test_gap_shorter_than_a_swing_is_bridged(begin_s):
     t_ns, accel, gyro = copy()
     first, stop = index(begin_s), index(begin_s + 0.14)
     keep = np.r_[0:first, stop : len(t_ns)]
@@ -73,7 +73,7 @@ def test_a_hole_shorter_than_a_swing_is_bridged(begin_s):
 
 @pytest.mark.parametrize("lasts_s", [0.05, 0.2, 0.3])
 @pytest.mark.parametrize("begin_s", [IN_SWING - 0.3, IN_SWING - 0.1, IN_SWING + 0.1])
-def test_a_hole_is_walked_as_the_strides_before_it(begin_s, lasts_s):
+def test_gap_is_filled_from_the_previous_strides(begin_s, lasts_s):
     """These strides are all alike, so next to nothing is lost: by straight lines decimetres are."""
     t_ns, accel, gyro = copy()
     first, stop = index(begin_s), index(begin_s + lasts_s)
@@ -83,7 +83,7 @@ def test_a_hole_is_walked_as_the_strides_before_it(begin_s, lasts_s):
     assert off_m < 0.015
 
 
-def test_a_sensor_that_hangs_through_a_swing_is_walked_as_the_strides_before_it():
+def test_swing_with_a_stuck_sensor_is_filled_from_the_previous_strides():
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING - 0.1), index(IN_SWING + 0.15)
     accel[first:stop] = accel[first]
@@ -94,7 +94,7 @@ def test_a_sensor_that_hangs_through_a_swing_is_walked_as_the_strides_before_it(
 
 
 @pytest.mark.parametrize("spoiled", ["nothing", "every stride"])
-def test_only_whole_strides_are_walked_like(spoiled):
+def test_gap_is_filled_from_complete_strides_only(spoiled):
     """A hole in the same part of every stride before leaves none to go by."""
     t_ns, accel, gyro = copy()
     begins_s = [IN_SWING - 0.1]
@@ -108,7 +108,7 @@ def test_only_whole_strides_are_walked_like(spoiled):
     assert (off_m < 0.015) == (spoiled == "nothing")
 
 
-def test_the_more_strides_differ_the_more_is_a_hole_doubted():
+def test_uncertainty_of_a_gap_grows_with_the_variation_of_strides():
     first, stop = index(IN_SWING - 0.1), index(IN_SWING + 0.15)
 
     def grown_rad2(differ):
@@ -123,7 +123,7 @@ def test_the_more_strides_differ_the_more_is_a_hole_doubted():
     assert grown_rad2(0.2) > 1.25 * grown_rad2(0.0) > 0.0
 
 
-def test_a_hole_too_short_to_be_flagged_is_doubted():
+def test_unflagged_short_gap_increases_the_uncertainty():
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING), index(IN_SWING + 0.09)
     keep = np.r_[0:first, stop : len(t_ns)]
@@ -137,7 +137,7 @@ def test_a_hole_too_short_to_be_flagged_is_doubted():
 
 
 @pytest.mark.parametrize(("lasts_s", "faulty"), [(0.05, True), (0.01, False)])
-def test_a_stride_with_a_hole_is_stated_in_full(lasts_s, faulty):
+def test_stride_with_a_gap_is_marked_faulty(lasts_s, faulty):
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING), index(IN_SWING + lasts_s)
     keep = np.r_[0:first, stop : stop + 5]
@@ -147,7 +147,7 @@ def test_a_stride_with_a_hole_is_stated_in_full(lasts_s, faulty):
     assert tracker._state[0]["faulty_stride"] == faulty
 
 
-def test_samples_that_get_lost_here_and_there_cost_a_centimetre():
+def test_scattered_sample_loss_costs_a_centimetre():
     whole = run(*copy())
     squares_m2 = []
     for seed in range(6):
@@ -158,7 +158,7 @@ def test_samples_that_get_lost_here_and_there_cost_a_centimetre():
     assert np.sqrt(np.mean(squares_m2)) < 0.012
 
 
-def test_a_gap_makes_no_heading_surer():
+def test_gap_does_not_reduce_the_heading_uncertainty():
     t_ns, accel, gyro = copy()
     description = SensorDescription("clipping", 200.0, gyro_full_scale_radps=0.4)  # much doubt
     first, stop = index(IN_STANCE), index(IN_STANCE + 0.2)
@@ -188,7 +188,7 @@ def test_a_clock_set_back_is_followed_after_a_moment():
 
 
 @pytest.mark.parametrize("after_lift_s", [-0.3, -0.2, 0.0, 0.2, 0.4])
-def test_samples_that_begin_again_in_a_swing_are_levelled_by_the_stance_that_follows(after_lift_s):
+def test_restart_during_a_swing_is_levelled_by_the_next_stance(after_lift_s):
     t_ns, accel, gyro = copy()
     begin_s = IN_SWING - 0.35 + after_lift_s
     first, stop = index(begin_s), index(begin_s + 0.4)
@@ -201,7 +201,7 @@ def test_samples_that_begin_again_in_a_swing_are_levelled_by_the_stance_that_fol
 
 
 @pytest.mark.parametrize("late_s", [0.0, 0.05, 0.1])
-def test_the_stillest_part_of_a_swing_after_a_long_hole_is_no_stance(late_s):
+def test_stillest_part_of_a_swing_after_a_long_gap_is_no_stance(late_s):
     t_ns, accel, gyro = copy()
     lift_s = IN_SWING - 0.35
     first, stop = index(lift_s - 1.0), index(lift_s + late_s)
@@ -212,7 +212,7 @@ def test_the_stillest_part_of_a_swing_after_a_long_hole_is_no_stance(late_s):
     assert not rows.stationary[swings].any()
 
 
-def test_what_was_before_a_long_hole_does_not_wait_for_the_stance_after_it():
+def test_rows_before_a_long_gap_are_released_without_waiting():
     t_ns, accel, gyro = copy()
     first, stop = index(IN_SWING), index(IN_SWING + 0.4)
     tracker = EskfTracker(WALK.description)
@@ -223,7 +223,7 @@ def test_what_was_before_a_long_hole_does_not_wait_for_the_stance_after_it():
     assert after.t_ns[-1] == t_ns[first - 1]
 
 
-def test_what_a_foot_turned_by_at_either_end_of_a_long_hole_is_known():
+def test_rotation_at_both_ends_of_a_long_gap_is_kept():
     """It turns evenly about an axis that is not level, of which levelling alone sees but a part."""
     rate_radps, axis_b = 1.5, np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
     t_s = np.arange(0.0, 6.0, 0.005)

@@ -98,7 +98,7 @@ def end_and_compare(two: TwoStations, ends_first: Station) -> None:
     assert short.events == long.events[: len(short.events)]
 
 
-def test_the_other_station_takes_over_and_the_first_comes_back(
+def test_standby_takes_over_and_the_first_station_returns(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     """In the middle of a long backlog, and though the two machines' clocks differ by a day and are
@@ -147,9 +147,7 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     assert times_ns[-1] - times_ns[0] < DAY_S / 24 * NS_PER_S
 
 
-def test_both_are_killed_at_any_instant_and_both_logs_are_whole(
-    tmp_path: Path, closing: ExitStack
-) -> None:
+def test_kills_of_both_stations_leave_complete_logs(tmp_path: Path, closing: ExitStack) -> None:
     report = kill_both("both", tmp_path, units=2, closing=closing, rounds=1)
     assert report.stated > 100
     assert report.lost == report.duplicates == (0, 0)
@@ -173,7 +171,7 @@ def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TwoStation
         yield two, link
 
 
-def test_a_standby_that_receives_no_unit_waits_for_a_person(
+def test_standby_without_units_waits_for_an_operator(
     apart: tuple[TwoStations, LossyLink],
 ) -> None:
     two, link = apart
@@ -187,7 +185,7 @@ def test_a_standby_that_receives_no_unit_waits_for_a_person(
     wait_until("the second follows again", two.second.follows)
 
 
-def test_a_cut_cable_leaves_two_that_lead_and_heals_to_one(
+def test_cut_cable_gives_two_leaders_and_its_repair_one(
     apart: tuple[TwoStations, LossyLink],
 ) -> None:
     two, link = apart

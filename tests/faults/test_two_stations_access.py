@@ -148,7 +148,7 @@ def assert_unreceived(at: Station, unit_id: str, other: str) -> None:
     assert received(at, other) > before
 
 
-def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_back(
+def test_access_revoked_before_a_crash_is_revoked_at_both_after_the_return(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     two = two_stations(tmp_path, (Place(), Place()), closing)
@@ -185,7 +185,7 @@ def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_
         )
 
 
-def test_whom_one_of_two_that_lead_shut_out_is_out_at_both_though_it_follows_then(
+def test_access_revoked_by_one_of_two_leaders_is_revoked_at_both(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     """The cable is cut; the first shuts people out, and the second, which stays, does not."""

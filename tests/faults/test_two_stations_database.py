@@ -34,7 +34,7 @@ def has_all(at: Station) -> bool:
 
 
 @pytest.mark.parametrize("left", [None, b""], ids=["deleted", "emptied"])
-def test_a_leader_that_lost_its_database_has_its_users_back_from_the_standby(
+def test_leader_without_database_restores_its_users_from_the_standby(
     tmp_path: Path, closing: ExitStack, left: bytes | None
 ) -> None:
     two = two_stations(tmp_path, (Place(), Place()), closing)

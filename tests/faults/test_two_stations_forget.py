@@ -101,7 +101,7 @@ def end_and_compare(two: TwoStations, photo: bytes, ends_first: Station) -> None
     assert short.events == long.events[: len(short.events)]
 
 
-def test_both_forget_and_their_logs_stay_the_same(two: TwoStations) -> None:
+def test_erasure_is_done_at_both_stations_with_identical_logs(two: TwoStations) -> None:
     person_id, photo = record_incident(two)
     two.first.post(f"/people/{person_id}/forget", {"name": NAME})
     wait_until("both have forgotten", lambda: done(two.first) and done(two.second))
@@ -110,7 +110,7 @@ def test_both_forget_and_their_logs_stay_the_same(two: TwoStations) -> None:
     end_and_compare(two, photo, two.second)
 
 
-def test_one_that_was_off_and_leads_by_now_forgets_and_the_first_what_it_had_from_there(
+def test_erasure_reaches_the_station_that_was_off_and_its_copies(
     two: TwoStations,
 ) -> None:
     person_id, photo = record_incident(two)

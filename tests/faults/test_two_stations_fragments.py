@@ -51,7 +51,7 @@ def has_plan(station: Station, plan: bytes) -> bool:
     return False
 
 
-def test_what_one_holder_leaves_unfinished_is_bounded_beside_a_standby(
+def test_unfinished_messages_of_a_holder_are_limited_beside_a_standby(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     two = two_stations(tmp_path, (Place(), Place()), closing)

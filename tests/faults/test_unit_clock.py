@@ -95,7 +95,9 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
         yield Ground(tmp_path, closing)
 
 
-def test_a_day_ahead_and_a_day_back_with_and_without_its_station(ground: Ground) -> None:
+def test_clock_set_by_a_day_keeps_order_and_times_with_and_without_a_station(
+    ground: Ground,
+) -> None:
     until(ground.is_received, "the unit is heard", COMPILING_S)
     for ahead_s in (DAY_S, -DAY_S):
         ground.clock.set_ahead(ahead_s)

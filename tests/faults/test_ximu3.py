@@ -76,7 +76,7 @@ def listen() -> Iterator[Callable[..., Listener]]:
         listener.close()
 
 
-def test_half_lines_and_noise_cost_what_they_hit(listen) -> None:
+def test_incomplete_lines_and_noise_lose_only_the_affected_samples(listen) -> None:
     stated = at_rest(300)
     hit = b"".join([stated[0][7:], *stated[1:50], b"\xff\x00\n", stated[50][:20], *stated[51:]])
     with closing(TcpDevice([hit])) as device:
@@ -88,7 +88,7 @@ def test_half_lines_and_noise_cost_what_they_hit(listen) -> None:
     assert (np.diff(listener.times_ns) > 0).all()
 
 
-def test_a_device_that_restarts_is_reported_and_goes_on(listen) -> None:
+def test_restarted_device_is_reported_and_continues(listen) -> None:
     """It is switched off and on again: its clock begins anew, the unit's does not."""
     sessions = at_rest(300, first=100_000), at_rest(300)
     with closing(TcpDevice(*sessions)) as device:
@@ -100,7 +100,7 @@ def test_a_device_that_restarts_is_reported_and_goes_on(listen) -> None:
     assert (np.diff(listener.times_ns) > 0).all()
 
 
-def test_a_device_that_is_not_there_yet_is_waited_for(listen) -> None:
+def test_missing_device_is_awaited(listen) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     listener = listen(f"tcp://127.0.0.1:{port}")
@@ -128,14 +128,14 @@ def test_a_line_without_samples_is_reported_and_opened_again(listen, stated, rep
         listener.close()
 
 
-def test_another_speed_than_stated_is_garbage_on_a_serial_line(listen) -> None:
+def test_wrong_baud_rate_is_reported_as_unreadable(listen) -> None:
     with closing(PtyDevice([np.random.default_rng(2).bytes(3000)])) as device:
         listener = listen(f"{device.source}?baud=9600", hasty=True)
         listener.receives("on a serial line the right ?baud=")
         listener.close()
 
 
-def test_a_cable_that_is_pulled_is_reported(listen) -> None:
+def test_unplugged_cable_is_reported(listen) -> None:
     with closing(PtyDevice(at_rest(200))) as device:
         listener = listen(device.source)
         until(lambda: listener.source.taken == 200, "it works")
@@ -144,7 +144,7 @@ def test_a_cable_that_is_pulled_is_reported(listen) -> None:
         listener.close()
 
 
-def test_samples_at_another_rate_than_stated_are_reported_once(listen) -> None:
+def test_unexpected_sample_rate_is_reported_once(listen) -> None:
     slow = [text_message("I", 8 * k * STEP_US, 0, 0, 0, 0, 0, 1.0 + k % 2) for k in range(3000)]
 
     def parts() -> Iterator[bytes]:
@@ -159,12 +159,12 @@ def test_samples_at_another_rate_than_stated_are_reported_once(listen) -> None:
     assert len([fault for fault in listener.faults if "a second, configured" in fault]) == 1
 
 
-def test_what_the_device_reports_is_passed_on(listen) -> None:
+def test_errors_of_the_device_are_forwarded(listen) -> None:
     with closing(TcpDevice([b"F,5,Battery \x07low\r\n"], hangs=True)) as device:
         listen(device.source).receives("it reports an error: Battery ?low")
 
 
-def test_what_the_device_reports_again_and_again_is_passed_on_once(listen) -> None:
+def test_repeated_error_of_the_device_is_forwarded_once(listen) -> None:
     stated = [b"F,5,SD card full\r\n"] * 30 + [b"F,6,Battery low\r\n"]
     with closing(TcpDevice(stated, hangs=True)) as device:
         listener = listen(device.source)
@@ -172,7 +172,7 @@ def test_what_the_device_reports_again_and_again_is_passed_on_once(listen) -> No
     assert len([fault for fault in listener.faults if "SD card full" in fault]) == 1
 
 
-def test_what_is_no_serial_port_is_reported(listen, tmp_path: Path) -> None:
+def test_device_that_is_no_serial_port_is_reported(listen, tmp_path: Path) -> None:
     plain = tmp_path / "file"
     plain.write_text("I,1,0,0,0,0,0,1\r\n")
     listen(str(plain)).receives("it is no serial port")
@@ -190,5 +190,5 @@ def test_what_is_no_serial_port_is_reported(listen, tmp_path: Path) -> None:
         (OSError(errno.ENOSPC, "No space left on device"), "No space left"),
     ],
 )
-def test_each_failure_of_a_line_has_a_sentence(error: OSError, reported: str) -> None:
+def test_every_failure_of_a_line_has_an_explanation(error: OSError, reported: str) -> None:
     assert reported in explain_os_error(error, parse_settings("tcp://imu.local").line)
