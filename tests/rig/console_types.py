@@ -17,7 +17,17 @@ import msgspec
 from msgspec import inspect
 
 from base_station.department import answers as department_answers
-from base_station.views import wire
+from base_station.views.wire import (
+    alarm,
+    command,
+    incident,
+    message,
+    place,
+    replay,
+    station,
+    trail,
+    unit,
+)
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
 from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
@@ -26,11 +36,12 @@ _SOURCES: Final = Path(__file__).resolve().parents[2] / "base_station/console/sr
 WIRE_TS: Final = _SOURCES / "wire.ts"
 ANSWERS_TS: Final = _SOURCES / "answers.ts"
 DEPARTMENT_TS: Final = _SOURCES / "department/answers.ts"
+_WIRE: Final = (unit, alarm, command, incident, place, station, replay, trail, message)
 _HEAD: Final = """\
 /** Messages of the station to the console, over the WebSocket.
  *
- * Generated from `base_station/views/wire.py`, which describes every field; after a change there
- * run `python -m tests.rig.console_types`.
+ * Generated from `base_station/views/wire`, which describes every field; after a change there run
+ * `python -m tests.rig.console_types`.
  */
 import type { Plan } from "./plan/planFile";
 
@@ -79,7 +90,7 @@ _NAMES: Final = {
 
 def wire_types() -> str:
     """Return the content of ``wire.ts``."""
-    return "\n".join([_HEAD, *_declarations(wire), _TAIL])
+    return "\n".join([_HEAD, *(text for module in _WIRE for text in _declarations(module)), _TAIL])
 
 
 def department_types() -> str:

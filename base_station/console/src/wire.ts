@@ -1,7 +1,7 @@
 /** Messages of the station to the console, over the WebSocket.
  *
- * Generated from `base_station/views/wire.py`, which describes every field; after a change there
- * run `python -m tests.rig.console_types`.
+ * Generated from `base_station/views/wire`, which describes every field; after a change there run
+ * `python -m tests.rig.console_types`.
  */
 import type { Plan } from "./plan/planFile";
 
@@ -57,43 +57,6 @@ export interface PositionView {
   floor_down_m: number | null;
 }
 
-export interface AlarmParametersView {
-  member?: string;
-  member_before?: string;
-  unit_id?: string;
-  duration_s?: number;
-  temperature_degc?: number;
-  heat_fraction?: number;
-  battery_fraction?: number;
-  radius_m?: number;
-  reasons?: string[];
-  fault?: string;
-  part?: string;
-  calibrated_s?: number;
-  fault_code?: string;
-  fault_texts?: Record<string, string>;
-  fault_numbers?: Record<string, number>;
-}
-
-export interface AlarmView {
-  alarm_id: string;
-  rule: string;
-  unit_id: string;
-  priority: number;
-  state: string;
-  level: string;
-  text: string;
-  by: string;
-  raised_ms: number;
-  last_raised_ms: number;
-  changed_ms: number;
-  code: string;
-  parameters: AlarmParametersView;
-  reason: string;
-  note: string;
-  peak: number | null;
-}
-
 export interface DutyView {
   checked_in_ms: number | null;
   checked_in_by: string;
@@ -131,53 +94,6 @@ export interface ClockView {
   std_ms: number;
 }
 
-export interface PinView {
-  pin_id: string;
-  kind: "place" | "start" | "meeting" | "beacon" | "tag";
-  unit_id: string;
-  other_id: string;
-  t_ms: number;
-  north_m: number | null;
-  east_m: number | null;
-  floor: number | null;
-  std_m: number;
-  heading_rad: number | null;
-  heading_std_rad: number;
-  note: string;
-  by: string;
-  set_ms: number;
-  state: "used" | "conflict" | "waiting";
-  residual_m: number | null;
-  sigmas: number | null;
-  text: string;
-}
-
-export interface BeaconView {
-  beacon_id: string;
-  label: string;
-  north_m: number;
-  east_m: number;
-  floor: number | null;
-  std_m: number;
-  reach_m: number;
-  seen_ms: number | null;
-  site_id: string;
-}
-
-export interface ExternalMarkerView {
-  marker_id: string;
-  source: string;
-  name: string;
-  kind: "person" | "marker" | "emergency";
-  remarks: string;
-  north_m: number;
-  east_m: number;
-  radius_m: number | null;
-  t_ms: number;
-  stale_ms: number;
-  site_id: string;
-}
-
 export interface UnitView {
   unit_id: string;
   label: string;
@@ -206,6 +122,43 @@ export interface UnitView {
   tracker: string;
   sensors: WornSensorView[];
   incident_id: string | null;
+}
+
+export interface AlarmParametersView {
+  member?: string;
+  member_before?: string;
+  unit_id?: string;
+  duration_s?: number;
+  temperature_degc?: number;
+  heat_fraction?: number;
+  battery_fraction?: number;
+  radius_m?: number;
+  reasons?: string[];
+  fault?: string;
+  part?: string;
+  calibrated_s?: number;
+  fault_code?: string;
+  fault_texts?: Record<string, string>;
+  fault_numbers?: Record<string, number>;
+}
+
+export interface AlarmView {
+  alarm_id: string;
+  rule: string;
+  unit_id: string;
+  priority: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+  raised_ms: number;
+  last_raised_ms: number;
+  changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
+  reason: string;
+  note: string;
+  peak: number | null;
 }
 
 export interface DeliveryView {
@@ -270,6 +223,67 @@ export interface IncidentView {
   work_limit_s: number;
   dispatch: DispatchView | null;
   site_id: string;
+}
+
+export interface PinView {
+  pin_id: string;
+  kind: "place" | "start" | "meeting" | "beacon" | "tag";
+  unit_id: string;
+  other_id: string;
+  t_ms: number;
+  north_m: number | null;
+  east_m: number | null;
+  floor: number | null;
+  std_m: number;
+  heading_rad: number | null;
+  heading_std_rad: number;
+  note: string;
+  by: string;
+  set_ms: number;
+  state: "used" | "conflict" | "waiting";
+  residual_m: number | null;
+  sigmas: number | null;
+  text: string;
+}
+
+export interface BeaconView {
+  beacon_id: string;
+  label: string;
+  north_m: number;
+  east_m: number;
+  floor: number | null;
+  std_m: number;
+  reach_m: number;
+  seen_ms: number | null;
+  site_id: string;
+}
+
+export interface ExternalMarkerView {
+  marker_id: string;
+  source: string;
+  name: string;
+  kind: "person" | "marker" | "emergency";
+  remarks: string;
+  north_m: number;
+  east_m: number;
+  radius_m: number | null;
+  t_ms: number;
+  stale_ms: number;
+  site_id: string;
+}
+
+export interface AnchorView {
+  lat_deg: number;
+  lon_deg: number;
+  height_m: number;
+  plan_rotation_rad: number;
+}
+
+export interface SiteView {
+  site_id: string;
+  plan: Plan | null;
+  anchor: AnchorView | null;
+  plan_placed: boolean;
 }
 
 export interface StandbyView {
@@ -371,18 +385,10 @@ export type TrailPoint = [
   after_gap?: 0 | 1,
 ];
 
-export interface AnchorView {
-  lat_deg: number;
-  lon_deg: number;
-  height_m: number;
-  plan_rotation_rad: number;
-}
-
-export interface SiteView {
-  site_id: string;
-  plan: Plan | null;
-  anchor: AnchorView | null;
-  plan_placed: boolean;
+export interface Trail {
+  type: "trail";
+  unit_id: string;
+  points: TrailPoint[];
 }
 
 export interface Snapshot {
@@ -404,12 +410,6 @@ export interface Snapshot {
   sites: SiteView[];
   plan_placed: boolean;
   dispatches: DispatchView[];
-}
-
-export interface Trail {
-  type: "trail";
-  unit_id: string;
-  points: TrailPoint[];
 }
 
 export interface Delta {
