@@ -15,6 +15,7 @@ from base_station.forwarders.tak.config import TakConfig
 from base_station.radio.config import RadioConfig
 from base_station.storage.db.server_address import ServerAddress
 from shared.channels import validate_unit_id
+from shared.clock import NS_PER_DAY
 from shared.coded_text import coded
 from shared.config import Within
 from shared.errors import ConfigError
@@ -131,6 +132,17 @@ class ArchiveConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class RetentionConfig:
+    """For how long the station keeps what it knows of people (docs/security.md)."""
+
+    incident_days: Annotated[float, Within(1.0, 36_500.0)]  # closed for longer: erased
+
+    @property
+    def incident_ns(self) -> int:
+        return round(self.incident_days * NS_PER_DAY)
+
+
+@dataclass(frozen=True, slots=True)
 class ServerConfig:
     """Settings of a program that has a bus, a console and a database."""
 
@@ -198,6 +210,7 @@ class StationConfig(ServerConfig):
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
     radio: dict[str, RadioConfig] = field(default_factory=dict)  # recorded channels by name
     archive: ArchiveConfig | None = None  # None: incidents are archived by a command alone
+    retention: RetentionConfig | None = None  # None: incidents are kept until somebody erases them
     department: DepartmentConfig | None = None  # to which this station reports; None: to none
 
     def forwarders(self) -> Mapping[str, Mapping[str, Any]]:

@@ -17,7 +17,7 @@ from base_station.api.hub import Hub
 from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.api.route_finder import RouteFinder
-from base_station.config import AccountabilityConfig
+from base_station.config import AccountabilityConfig, RetentionConfig
 from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
 from base_station.dispatch.alert_intake import AlertIntake
@@ -86,6 +86,7 @@ class Services(LoginServices):
     alerts: AlertIntake | None = None  # None: a station that only replays
     dispatch: DispatchConfig = field(default_factory=DispatchConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
+    retention: RetentionConfig | None = None  # None: incidents are kept
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
     route_finder: RouteFinder = field(default_factory=RouteFinder)
     image_lock: Lock = field(default_factory=Lock)  # decoding takes up to 200 MB: one at a time

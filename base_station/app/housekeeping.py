@@ -11,6 +11,7 @@ from base_station.app.import_command import COMMAND as IMPORT_COMMAND
 from base_station.app.live_parts import LiveParts
 from base_station.app.older_assignments import OlderAssignments
 from base_station.importers.requests import ImportAction, ImportRequests
+from base_station.privacy.incident_retention import BY_RETENTION, IncidentRetention
 from base_station.privacy.requests import ErasureRequests
 from base_station.security.pki.enrolled_units import EnrolledUnits
 from base_station.storage.segment_index import SegmentIndex
@@ -38,6 +39,18 @@ class Housekeeping:
         self._requests = ErasureRequests(
             disk.folder, partial(accept_from_command, services, FORGET_COMMAND)
         )
+        retention = parts.resources.config.retention
+        self._retention = (
+            None
+            if retention is None
+            else IncidentRetention(
+                retention.incident_ns,
+                disk.records,
+                parts.erasures,
+                partial(accept_from_command, services, BY_RETENTION, "incident"),
+                disk.clock,
+            )
+        )
 
     def run(self) -> None:
         """One round."""
@@ -63,6 +76,8 @@ class Housekeeping:
         parts, live = self._parts, self._parts.live
         self._enrolled.update()
         self._older.look()
+        if self._retention is not None:
+            self._retention.look()
         if live.thresholds != live.configured_thresholds:
             parts.gate.submit(STATION_ID, SetThresholds(live.configured_thresholds))
         if live.fuser != live.configured_fuser:

@@ -67,6 +67,7 @@ def new_services(parts: LiveParts) -> Services:
         imports=ImportCatalogue(disk.store, ImportFolder(disk.folder.imports)),
         dispatch=resources.config.dispatch,
         accountability=resources.config.accountability,
+        retention=resources.config.retention,
     )
 
 

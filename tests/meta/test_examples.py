@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.config import ArchiveConfig, StationConfig
+from base_station.config import ArchiveConfig, RetentionConfig, StationConfig
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of
 from base_station.department.config import DepartmentServerConfig
@@ -37,6 +37,7 @@ LEFT_OUT = {
     "sensors",
     "speed",
     "radio",  # the last test
+    "retention",  # the last test
     "tak",  # the last test
     "wearer.height_m",
     "wearer.leg_length_m",
@@ -100,6 +101,7 @@ def test_examples_of_connections_name_every_setting_with_its_default(tmp_path: P
     assert_names_defaults(settings.tak["county"], TakConfig, named["tak"]["county"])
     assert_names_defaults(settings.radio["Tac-1"], RadioConfig, named["radio"]["Tac-1"])
     assert_names_defaults(settings.archive, ArchiveConfig, named["archive"])
+    assert_names_defaults(settings.retention, RetentionConfig, named["retention"])
     assert_names_defaults(settings.department, DepartmentConfig, named["department"])
 
 

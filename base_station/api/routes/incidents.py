@@ -61,6 +61,7 @@ class IncidentAnswer(BaseModel):
     closed_by: str
     dispatch_number: str  # empty: opened from none
     archived_ms: int | None  # when it was copied to an archive and read there; null: it is in none
+    erased_at_ms: int | None  # when retention erases its people; null: never, or it is open
 
 
 class Raising(Answer, frozen=True):
@@ -132,7 +133,7 @@ def list_incidents(
     else:
         found = station.records.find_incidents(query, limit)
     archived_ns = station.archived.times_ns([one.incident_id for one in found])
-    return [_incident(one, station.roster, archived_ns.get(one.incident_id)) for one in found]
+    return [_incident(one, station, archived_ns.get(one.incident_id)) for one in found]
 
 
 @router.post("/incidents", status_code=201)
@@ -160,15 +161,15 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
         closed_by="",
         dispatch_number=new.dispatch_number,
         archived_ms=None,
+        erased_at_ms=None,
     )
 
 
 @router.get("/incidents/{incident_id}")
 def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
     incident = incident_or_404(station, incident_id)
-    return _incident(
-        incident, station.roster, station.archived.times_ns([incident_id]).get(incident_id)
-    )
+    archived_ns = station.archived.times_ns([incident_id]).get(incident_id)
+    return _incident(incident, station, archived_ns)
 
 
 @router.get("/incidents/{incident_id}/dispatch")
@@ -225,7 +226,7 @@ def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
     incident = station.records.incident(incident_id)
     if incident is None:
         raise Problem(503, "The incident was opened, but the database has not taken it yet.")
-    return _incident(incident, station.roster, None)
+    return _incident(incident, station, None)
 
 
 def _past_alarm(
@@ -260,15 +261,19 @@ def _is_raised_anew(
 
 
 def _incident(
-    incident: models.IncidentRow, roster: Roster, archived_ns: int | None
+    incident: models.IncidentRow, station: Services, archived_ns: int | None
 ) -> IncidentAnswer:
+    retention, erased_at_ns = station.retention, None
+    if retention is not None and incident.closed_ns is not None:
+        erased_at_ns = incident.closed_ns + retention.incident_ns
     return IncidentAnswer(
         incident_id=incident.incident_id,
-        name=roster.shown(incident.name),
+        name=station.roster.shown(incident.name),
         opened_ms=to_ms(incident.opened_ns),
         opened_by=incident.opened_by,
         closed_ms=to_ms_or_none(incident.closed_ns),
         closed_by=incident.closed_by,
         dispatch_number=incident.dispatch_number,
         archived_ms=to_ms_or_none(archived_ns),
+        erased_at_ms=to_ms_or_none(erased_at_ns),
     )

@@ -23,11 +23,10 @@ from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.engine.sample_intake import SampleIntake
 from base_station.views.answer import to_ms, to_ms_or_none
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_DAY
 
 router = APIRouter(tags=["samples"], route_class=UploadRoute)
 
-_NS_PER_DAY = 86_400 * NS_PER_S
 _READERS = {JSON_TYPE: read_json, PROTOBUF_TYPE: read_protobuf}
 _CONTENT = {
     JSON_TYPE: {"schema": {"$ref": f"#/components/schemas/{PostedSamples.__name__}"}},
@@ -115,7 +114,7 @@ def add_unit_token(
 ) -> UnitTokenSecret:
     """A token with which this unit posts samples, and nothing else; it is never shown again."""
     _require_registered(station, unit_id)
-    expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * _NS_PER_DAY
+    expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * NS_PER_DAY
     token_id, secret = station.accounts.unit_tokens.add(unit_id, who.username, expires_ns)
     station.records.audit(who.username, "AddedUnitToken", f"{token_id} of unit {unit_id}")
     return UnitTokenSecret(token_id=token_id, token=secret)

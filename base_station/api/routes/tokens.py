@@ -14,11 +14,9 @@ from base_station.api.problems import Problem
 from base_station.api.routes.users import RoleWord
 from base_station.api.services import Station
 from base_station.views.answer import to_ms, to_ms_or_none
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_DAY
 
 router = APIRouter(tags=["tokens"])
-
-_NS_PER_DAY = 86_400 * NS_PER_S
 
 
 class Token(BaseModel):
@@ -59,7 +57,7 @@ def list_tokens(station: Station, who: Viewer) -> list[Token]:
 
 @router.post("/tokens", status_code=201)
 def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
-    expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * _NS_PER_DAY
+    expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * NS_PER_DAY
     role = Role.of(new.role)
     if role > who.role:  # a token makes no token that may do more than itself
         raise Problem(403, f"You are {who.role.word}; a token of yours cannot be {new.role}.")

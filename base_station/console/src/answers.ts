@@ -380,6 +380,7 @@ export interface IncidentAnswer {
   closed_by: string;
   dispatch_number: string;
   archived_ms: number | null;
+  erased_at_ms: number | null;
 }
 
 export interface IncidentReport {

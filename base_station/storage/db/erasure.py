@@ -136,10 +136,32 @@ def erased_detail(incident_id: str) -> str:
     return f"{ERASED_TEXT} {incident_id}".rstrip()
 
 
-def erased_incidents(session: Session) -> set[str]:
-    """Ids of the incidents that were forgotten here."""
-    details = session.scalars(select(AuditEntry.detail).where(AuditEntry.action == FORGOT_INCIDENT))
-    return {detail.removeprefix(f"{INCIDENT} ").partition(":")[0] for detail in details}
+def erased_incidents(session: Session) -> dict[str, int]:
+    """Ids of the incidents that were erased here, each with the station time of the last time."""
+    erasures = select(AuditEntry.detail, AuditEntry.t_ns).where(
+        AuditEntry.action == FORGOT_INCIDENT
+    )
+    return {
+        detail.removeprefix(f"{INCIDENT} ").partition(":")[0]: t_ns
+        for detail, t_ns in session.execute(erasures.order_by(AuditEntry.t_ns))
+    }
+
+
+def incidents_to_erase(session: Session, closed_before_ns: int) -> list[tuple[str, int]]:
+    """Ids of incidents that were closed before then, the first closed first, each with the time of
+    its newest late data; not those that are erased with all that came late.
+    """
+    erased_ns = erased_incidents(session)
+    closed = (
+        select(IncidentRow.incident_id, IncidentRow.late_data_ns)
+        .where(IncidentRow.closed_ns < closed_before_ns)
+        .order_by(IncidentRow.closed_ns)
+    )
+    return [
+        (incident_id, late_data_ns)
+        for incident_id, late_data_ns in session.execute(closed)
+        if incident_id not in erased_ns or late_data_ns > erased_ns[incident_id]
+    ]
 
 
 def ids_of(session: Session, name: str) -> set[str]:

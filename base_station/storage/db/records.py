@@ -12,6 +12,7 @@ from sqlalchemy.orm import InstrumentedAttribute
 from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.storage.db import models
 from base_station.storage.db.database import Database
+from base_station.storage.db.erasure import incidents_to_erase
 from base_station.storage.db.incident_search import IncidentQuery, IncidentSearch
 from base_station.storage.db.known_people import load_people, person_lookup, shown_text
 from base_station.storage.db.members import Members, members_of, was_member
@@ -107,6 +108,11 @@ class Records:
     def incident(self, incident_id: str) -> IncidentRow | None:
         with self._store.read() as session:
             return session.get(IncidentRow, incident_id)
+
+    def incidents_to_erase(self, closed_before_ns: int) -> Sequence[tuple[str, int]]:
+        """Incidents that were closed before then and are not erased (``erasure``)."""
+        with self._store.read() as session:
+            return incidents_to_erase(session, closed_before_ns)
 
     def require_incident(self, incident_id: str) -> IncidentRow:
         """Raises UserError, which names those that are known."""

@@ -93,6 +93,12 @@ export function IncidentsDialog() {
                     {t("incident.archived", { time: dateAndTime(incident.archived_ms) })}
                   </span>
                 )}
+                {incident.erased_at_ms !== null && (
+                  <span class="quiet">
+                    {" "}
+                    {t("incident.erased_at", { time: dateAndTime(incident.erased_at_ms) })}
+                  </span>
+                )}
               </td>
               <td>
                 <button

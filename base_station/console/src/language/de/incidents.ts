@@ -16,6 +16,7 @@ export const incident: Part<"incident"> = {
   personal_data: "Daten",
   still_open: "offen",
   archived: "archiviert {time}",
+  erased_at: "Personendaten gelöscht {time}",
   replay_of: "Wiedergabe: {incident}",
   accuracy: "Genauigkeit",
   erase_warning: "Wer dort war und wo, wird gelöscht.",

@@ -15,6 +15,7 @@ export const incident = {
   personal_data: "Personal data",
   still_open: "open",
   archived: "archived {time}",
+  erased_at: "data of its people erased {time}",
   replay_of: "Replay {incident}",
   accuracy: "Accuracy report",
   erase_warning: "Who was there and where is deleted.",

@@ -16,6 +16,7 @@ export const incident: Part<"incident"> = {
   personal_data: "Données",
   still_open: "en cours",
   archived: "archivée {time}",
+  erased_at: "données des personnes effacées {time}",
   replay_of: "Relecture\u00a0: {incident}",
   accuracy: "Précision",
   erase_warning: "Qui était là et où est effacé.",
