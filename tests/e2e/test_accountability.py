@@ -30,7 +30,7 @@ def roll_call(page: Page) -> None:
 
 
 @pytest.mark.parametrize("screen", SCREENS)
-def test_who_was_never_received_is_not_shown_as_confirmed(stage: Stage, screen: str) -> None:
+def test_member_without_a_message_is_not_shown_as_confirmed(stage: Stage, screen: str) -> None:
     page, _ = stage.open(just_opened(), screen)
     assert flaws(page) == []
     clock = page.locator(".par-clock")
@@ -51,7 +51,7 @@ def test_who_was_never_received_is_not_shown_as_confirmed(stage: Stage, screen: 
     )
 
 
-def test_anyone_is_in_alarm_is_confirmed_only_on_a_second_word(stage: Stage) -> None:
+def test_confirmation_of_a_member_in_alarm_needs_a_second_press(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     roll_call(page)
     dialog = page.get_by_role("dialog")
@@ -68,7 +68,7 @@ def test_anyone_is_in_alarm_is_confirmed_only_on_a_second_word(stage: Stage) -> 
     station.expect_changes("/check-ins")
 
 
-def test_on_the_card_and_of_an_order_it_is_asked_too(stage: Stage) -> None:
+def test_card_and_order_ask_for_the_second_press_too(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     card = page.locator(".card", has_text=DOWN)
     card.get_by_role("button", name=DOWN).click()
@@ -101,7 +101,7 @@ PRESS_AS_SOON_AS_SHOWN = """([words, name]) => {
 }"""
 
 
-def test_a_question_to_which_an_alarm_has_come_is_asked_anew(stage: Stage) -> None:
+def test_new_alarm_restarts_the_confirmation(stage: Stage) -> None:
     """The press was meant for what stood there before."""
     shown = scenes.bad_minute()
     page, station = stage.open(shown)
@@ -119,7 +119,7 @@ def test_a_question_to_which_an_alarm_has_come_is_asked_anew(stage: Stage) -> No
     station.expect_changes()
 
 
-def test_what_was_entered_by_radio_is_undone_at_once_or_later(stage: Stage) -> None:
+def test_confirmation_by_radio_can_be_undone_at_once_and_later(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     roll_call(page)
     dialog = page.get_by_role("dialog")
@@ -142,7 +142,7 @@ def test_what_was_entered_by_radio_is_undone_at_once_or_later(stage: Stage) -> N
     assert later.value.post_data_json == {"unit_id": "FF-01"}
 
 
-def test_the_offer_to_undo_ends_by_itself(stage: Stage) -> None:
+def test_undo_button_disappears_after_its_time(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     page.clock.install()
     page.clock.pause_at(page.evaluate("Date.now()") + 1000)  # however slow the machine

@@ -25,7 +25,7 @@ def open_list(page: Page) -> None:
     page.get_by_role("dialog", name="Alarms").wait_for()
 
 
-def test_each_alarm_has_its_life_reason_note_and_peak(stage: Stage) -> None:
+def test_alarm_shows_its_transitions_reason_note_and_peak(stage: Stage) -> None:
     answers = {**ANSWERS, f"{PAST}/alarms": LIVES}
     page, _ = stage.open(scenes.bad_minute(), answers=answers, timezone="UTC")
     open_list(page)
@@ -115,7 +115,7 @@ def test_a_reason_and_a_note_go_to_the_station_from_zone_and_list(stage: Stage) 
     assert barriers(page) == []
 
 
-def test_a_replay_lists_the_alarms_of_its_incident_and_each_time_leads_there(
+def test_replay_lists_the_alarms_and_their_times_seek(
     stage: Stage,
 ) -> None:
     answers = {**ANSWERS, f"{PAST}/alarms": LIVES}

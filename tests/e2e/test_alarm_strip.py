@@ -11,7 +11,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import SCREENS, Stage
 
 
-def test_an_alarm_says_the_figure_of_now_beside_the_time_since(stage: Stage) -> None:
+def test_alarm_shows_the_current_value_and_its_age(stage: Stage) -> None:
     """Its text keeps the figure of when it was raised, which nobody is to take for the present."""
     page, station = stage.open(scenes.bad_minute())
     alarms = page.get_by_role("region", name="Open alarms")

@@ -12,7 +12,7 @@ from tests.e2e.stage import Stage
 STILL = wire.AlarmParametersView(member="Jonas Bergman", duration_s=34.0)
 
 
-def test_an_alarm_is_german_where_the_console_is_and_english_where_a_log_has_no_code(
+def test_alarm_is_translated_and_english_without_a_code(
     stage: Stage,
 ) -> None:
     page, station = stage.open(scenes.bad_minute())

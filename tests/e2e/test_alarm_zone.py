@@ -52,7 +52,7 @@ def raise_alarms(station: PlayedStation, picture: wire.Snapshot, first: int) -> 
 @pytest.mark.parametrize(
     ("count", "size"), [*((40, size) for size in SIZES), (200, SIZES[0]), (200, SIZES[3])]
 )
-def test_nothing_moves_when_alarms_come_and_go(
+def test_controls_keep_their_place_when_alarms_come_and_go(
     stage: Stage, count: int, size: tuple[int, int]
 ) -> None:
     page, station = stage.open(scenes.quiet(count))
@@ -71,7 +71,7 @@ def test_nothing_moves_when_alarms_come_and_go(
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_what_has_no_room_is_one_press_away_and_moves_nothing(
+def test_hidden_alarms_are_one_press_away_and_move_nothing(
     stage: Stage, size: tuple[int, int]
 ) -> None:
     page, _ = stage.open(scenes.flood(40, down=9))
@@ -89,7 +89,7 @@ def test_what_has_no_room_is_one_press_away_and_moves_nothing(
     assert flaws(page) == []
 
 
-def test_a_member_has_one_row_and_one_press_acknowledges_all_of_it(stage: Stage) -> None:
+def test_one_press_acknowledges_all_alarms_of_a_member(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     fall, still, *_ = station.picture.alarms
     rows = strip(page).get_by_role("listitem")
@@ -103,7 +103,7 @@ def test_a_member_has_one_row_and_one_press_acknowledges_all_of_it(stage: Stage)
     expect(page.get_by_role("dialog", name="Resolve 2 alarms")).to_be_visible()
 
 
-def test_a_press_at_once_after_a_row_got_another_cause_is_ignored(stage: Stage) -> None:
+def test_press_directly_after_a_change_of_the_row_is_ignored(stage: Stage) -> None:
     """It was meant for the heat alone; the mayday would never be seen."""
     page, station = stage.open(scenes.bad_minute())
     mira = station.picture.units[2]
@@ -126,7 +126,7 @@ def test_a_press_at_once_after_a_row_got_another_cause_is_ignored(stage: Stage) 
     expect(rows.filter(has_text="Mayday from Mira Okafor")).to_contain_text("+ Heat: warning")
 
 
-def test_a_flood_is_one_row_with_one_acknowledgement(stage: Stage) -> None:
+def test_alarm_flood_is_one_row_with_one_acknowledgement(stage: Stage) -> None:
     page, station = stage.open(scenes.flood(40, down=1), timezone="UTC")
     rows = strip(page).get_by_role("listitem")
     expect(rows).to_have_count(2)
@@ -143,7 +143,7 @@ def test_a_flood_is_one_row_with_one_acknowledgement(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_everybody_can_use_the_zone_and_its_list(stage: Stage, scheme: str) -> None:
+def test_alarm_zone_and_list_are_accessible(stage: Stage, scheme: str) -> None:
     page, _ = stage.open(scenes.flood(40, down=9))
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     assert barriers(page) == []

@@ -14,7 +14,7 @@ from tests.e2e.console_page import close, menu, press, strip
 from tests.e2e.stage import Stage
 
 
-def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
+def test_quick_second_press_does_not_resolve_the_alarm(stage: Stage) -> None:
     """The button to acknowledge is followed at its place by the one to resolve."""
     page, station = stage.open(scenes.bad_minute())
     fall, still = scenes.bad_minute().alarms[:2]
@@ -36,7 +36,7 @@ def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
         press(dialog.get_by_role("button", name="False alarm"))
 
 
-def test_an_evacuation_takes_two_presses_at_two_places(stage: Stage) -> None:
+def test_evacuation_needs_two_presses_at_different_places(stage: Stage) -> None:
     for screen in ("laptop", "phone"):
         page, station = stage.open(scenes.bad_minute(), screen)
         first = page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate")
@@ -46,7 +46,7 @@ def test_an_evacuation_takes_two_presses_at_two_places(stage: Stage) -> None:
         station.expect_changes("/commands")
 
 
-def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
+def test_dialog_does_not_hide_urgent_alarms(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     dialog = menu(page, "Units")
     dialog.get_by_role("alert").get_by_role("button", name="Jonas Bergman may have fallen").click()
@@ -54,7 +54,7 @@ def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
     expect(page.locator(".card.chosen")).to_contain_text("Jonas Bergman")
 
 
-def test_who_took_an_alarm_leaves_room_for_what_it_is_about(stage: Stage) -> None:
+def test_long_name_of_the_acknowledging_user_leaves_room_for_the_cause(stage: Stage) -> None:
     """However long the name, the row is as with a short one; it says all to who points at it."""
     shown = scenes.bad_minute()
     rows_px = []

@@ -14,7 +14,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 
-def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
+def test_endangered_members_are_first_and_complete_among_forty(stage: Stage) -> None:
     page, _ = stage.open(scenes.crowd())
     cards = page.locator(".card")
     expect(cards).to_have_count(42)
@@ -27,7 +27,7 @@ def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
     expect(calm).not_to_have_class(re.compile("brief"))  # who is chosen is shown whole
 
 
-def test_what_person_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
+def test_last_activity_of_a_silent_member_shows_its_age(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     silent = page.locator(".card", has_text="Tomas Novak").locator(".activity")
     expect(silent).to_contain_text("1 min old")
@@ -35,7 +35,7 @@ def test_what_person_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
     expect(received).to_have_text("Walking")
 
 
-def test_a_figure_and_the_word_behind_it_are_two_words_to_who_listens(stage: Stage) -> None:
+def test_screen_reader_separates_figure_and_unit(stage: Stage) -> None:
     shown = scenes.bad_minute()
     low = scenes.alarm(1, "battery", 2, "The battery of Jonas Bergman's unit is at 7 %", 5)
     units = (shown.units[0], scenes.with_alarms(shown.units[1], low), *shown.units[2:])
@@ -47,7 +47,7 @@ def test_a_figure_and_the_word_behind_it_are_two_words_to_who_listens(stage: Sta
     expect(flat.filter(has_text="%")).to_have_text("7 % low")
 
 
-def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
+def test_unit_switched_off_normally_is_not_highlighted(stage: Stage) -> None:
     """Its wearer is looked for by nobody: no hatching, no doubt, no place above those at work."""
     page, _ = stage.open(scenes.switched_off())
     cards = page.locator(".card")
@@ -65,7 +65,7 @@ def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
     assert painted(page, "--quiet") < 4000, "the plan is not hatched for them"
 
 
-def test_anyone_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:
+def test_chosen_card_is_visible_with_all_its_actions(stage: Stage) -> None:
     page, _ = stage.open(scenes.crowd())
     lost = scenes.crowd().alarms[3]
     page.locator(".card").last.scroll_into_view_if_needed()
@@ -77,7 +77,7 @@ def test_anyone_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) ->
     expect(page.locator(".card-actions")).to_be_in_viewport(ratio=1)
 
 
-def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) -> None:
+def test_actions_stay_visible_on_low_screens(stage: Stage) -> None:
     """And however long the card grows while it is looked at."""
     page, station = stage.open(scenes.crowd(), "large at 200 %")
     page.locator(".card", has_text="Tomas Novak").get_by_role("button").first.click()
@@ -91,7 +91,7 @@ def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) ->
     expect(actions.get_by_role("button", name="Message")).to_be_in_viewport(ratio=1)
 
 
-def test_who_is_overdue_is_stated_to_be_so_once(stage: Stage) -> None:
+def test_overdue_member_is_marked_once(stage: Stage) -> None:
     page, station = stage.open(scenes.overdue())
     card = page.locator(".card", has_text=scenes.NAMES[0])
     expect(card).to_contain_text(re.compile(r"PAR overdue \d+:\d+"))
@@ -103,7 +103,7 @@ def test_who_is_overdue_is_stated_to_be_so_once(stage: Stage) -> None:
     expect(open_alarms.get_by_role("listitem")).to_have_text(["PAR overdue"])
 
 
-def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:
+def test_faults_of_a_unit_are_distinguished(stage: Stage) -> None:
     page, _ = stage.open(scenes.two_faults())
     card = page.locator(".card", has_text="Mira Okafor")
     faults = card.get_by_label("Open alarms of this person").get_by_role("listitem")
@@ -113,7 +113,7 @@ def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:
     assert flaws(page) == []
 
 
-def test_a_card_tells_what_befell_who_wore_the_unit_before(stage: Stage) -> None:
+def test_card_shows_alarms_of_the_previous_wearer(stage: Stage) -> None:
     """Bo is well; nobody is to look for him because of what was never resolved."""
     shown = scenes.bad_minute()
     wears_now = msgspec.structs.replace(shown.units[1], person=scenes.person(7))
@@ -126,7 +126,7 @@ def test_a_card_tells_what_befell_who_wore_the_unit_before(stage: Stage) -> None
     )
 
 
-def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> None:
+def test_switched_off_unit_shows_the_time_inside(stage: Stage) -> None:
     page, station = stage.open(scenes.switched_off())
     card = page.locator(".card", has_text="Jonas Bergman")
     expect(card).to_contain_text("Was inside4 min")
@@ -135,7 +135,7 @@ def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> 
     expect(card).to_contain_text("Was inside4 min")
 
 
-def test_who_is_given_a_unit_is_ordered_to_wear_another(stage: Stage) -> None:
+def test_assignment_options_name_the_current_unit_of_members(stage: Stage) -> None:
     """Chosen by a slip, they would be looked for where that unit is."""
     page, _ = stage.open(scenes.quiet())
     worn_by = menu(page, "Units").get_by_label("Assign FF-01 to")
@@ -147,7 +147,7 @@ def test_who_is_given_a_unit_is_ordered_to_wear_another(stage: Stage) -> None:
     expect(options.filter(has_text="Astrid Lindqvist")).to_have_text("Astrid Lindqvist (Engine 1)")
 
 
-def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
+def test_phone_shows_either_list_or_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), "phone")
     people, plan = page.get_by_role("region", name="People"), page.locator(".map")
     expect(people).to_be_visible()
@@ -160,7 +160,7 @@ def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
     expect(page.get_by_role("dialog")).to_be_visible()
 
 
-def test_a_unit_that_is_not_ready_says_so_and_one_with_warnings_where_it_is_chosen(
+def test_unit_that_is_not_ready_is_marked_and_warnings_are_on_the_chosen_card(
     stage: Stage,
 ) -> None:
     shown = scenes.bad_minute()

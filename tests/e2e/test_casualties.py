@@ -20,7 +20,7 @@ def casualties(page: Page) -> Locator:
 @pytest.mark.parametrize(
     ("count", "size"), [*((40, size) for size in SIZES), (200, SIZES[0]), (200, SIZES[3])]
 )
-def test_who_is_down_is_seen_wherever_the_list_is_scrolled(
+def test_casualty_is_visible_at_any_scroll_position(
     stage: Stage, count: int, size: tuple[int, int]
 ) -> None:
     page, _ = stage.open(scenes.some_down(count, DOWN))
@@ -41,21 +41,21 @@ def test_who_is_down_is_seen_wherever_the_list_is_scrolled(
     expect(page.locator(".card.chosen .name")).to_be_in_viewport(ratio=1)
 
 
-def test_a_casualty_says_what_is_the_matter_and_where(stage: Stage) -> None:
+def test_casualty_shows_its_cause_and_place(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     expect(casualties(page)).to_have_count(1)
     expect(casualties(page)).to_contain_text("Jonas Bergman")
     expect(casualties(page)).to_contain_text("floor 1 · Fall, No motion")
 
 
-def test_overdue_alone_is_no_casualty(stage: Stage) -> None:
+def test_overdue_member_is_no_casualty(stage: Stage) -> None:
     page, _ = stage.open(scenes.overdue())
     expect(page.locator(".card").first).to_contain_text("over")
     expect(casualties(page)).to_have_count(0)
 
 
 @pytest.mark.parametrize("size", [SIZES[0], SIZES[2]])
-def test_the_edge_of_the_plan_points_to_who_is_down_outside_it(
+def test_arrow_at_the_edge_of_the_plan_points_to_a_casualty_outside(
     stage: Stage, size: tuple[int, int]
 ) -> None:
     page, _ = stage.open(scenes.at_the_edges())

@@ -32,7 +32,7 @@ def test_a_wrong_password_is_refused(chromium: Browser, station: StationProcess)
     stranger.close()
 
 
-def test_the_card_says_who_how_hot_how_sure_and_how_old(page: Page, card: Locator) -> None:
+def test_card_shows_name_temperature_uncertainty_and_age(page: Page, card: Locator) -> None:
     expect(card).to_contain_text(NAME)
     for words in ("Ladder 1 · Officer", "Walking", "31 °C", "83 %", "Link good", "±"):
         expect(card).to_contain_text(words)
@@ -49,7 +49,7 @@ def test_the_responder_moves_on_card_and_plan(page: Page, card: Locator) -> None
     assert plan.screenshot() != seen
 
 
-def test_a_mayday_is_seen_acknowledged_and_resolved(
+def test_mayday_is_shown_acknowledged_and_resolved(
     page: Page, card: Locator, wearable: Wearable
 ) -> None:
     wearable.press_mayday()
@@ -73,14 +73,12 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_everybody_can_use_it(page: Page, card: Locator, scheme: str) -> None:
+def test_console_is_accessible(page: Page, card: Locator, scheme: str) -> None:
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     assert barriers(page) == []
 
 
-def test_two_machines_under_one_name_are_unmistakable(
-    page: Page, card: Locator, station: StationProcess
-) -> None:
+def test_duplicate_devices_are_marked(page: Page, card: Locator, station: StationProcess) -> None:
     name = "FF-09"
     with Wearable(name, station.bus), Wearable(name, station.bus):
         cloned = page.locator(f"[data-unit='{name}']")
@@ -91,7 +89,7 @@ def test_two_machines_under_one_name_are_unmistakable(
     expect(card).not_to_contain_text("two devices")
 
 
-def test_a_lost_station_is_unmistakable_and_comes_back(
+def test_lost_station_is_marked_and_returns(
     page: Page, card: Locator, station: StationProcess
 ) -> None:
     expect(page.get_by_test_id("link")).to_have_text("Connected")
@@ -106,7 +104,7 @@ def test_a_lost_station_is_unmistakable_and_comes_back(
     expect(card).to_contain_text("Link good")
 
 
-def test_a_station_that_only_replays_never_looks_live(
+def test_replay_station_is_not_shown_as_live(
     chromium: Browser, page: Page, station: StationProcess
 ) -> None:
     incidents = page.evaluate("fetch('/api/v1/incidents').then((answer) => answer.json())")

@@ -24,7 +24,7 @@ from tests.e2e.enlisting import INCIDENT, NAME
 from tests.e2e.wearable import Wearable
 
 
-def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
+def test_user_is_added_and_the_audit_names_the_administrator(page: Page, card: Locator) -> None:
     account = menu(page, "Account")
     account.get_by_role("button", name="Users").click()
     dialog = page.get_by_role("dialog", name="Users")
@@ -41,9 +41,7 @@ def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Loc
     close(audit)
 
 
-def test_the_units_are_looked_after_in_their_dialog(
-    page: Page, card: Locator, wearable: Wearable
-) -> None:
+def test_units_are_managed_in_their_dialog(page: Page, card: Locator, wearable: Wearable) -> None:
     wearable.describe("led")
     press(card.get_by_role("button").first)
     sensors = card.locator(".fact", has_text="Sensors")
@@ -69,13 +67,13 @@ def test_the_units_are_looked_after_in_their_dialog(
 
 
 @pytest.mark.parametrize("name", ["Incidents", "Units", "People", "Site", "Account"])
-def test_everybody_can_use_the_dialogs(page: Page, card: Locator, name: str) -> None:
+def test_dialogs_are_accessible(page: Page, card: Locator, name: str) -> None:
     dialog = menu(page, name)
     assert barriers(page) == []
     close(dialog)
 
 
-def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locator) -> None:
+def test_assessment_of_positions_is_accessible(page: Page, card: Locator) -> None:
     menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
     dialog = page.get_by_role("dialog", name=INCIDENT)
     errors = dialog.get_by_role("table", name="ISO/IEC 18305")
@@ -105,7 +103,7 @@ def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     assert metres_north(card) > in_the_past_m
 
 
-def test_a_replay_is_left_after_what_was_asked_of_it(page: Page, card: Locator) -> None:
+def test_replay_ends_after_its_pending_requests(page: Page, card: Locator) -> None:
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
     banner = page.get_by_role("region", name="Replay")
@@ -124,7 +122,7 @@ def test_a_replay_is_left_after_what_was_asked_of_it(page: Page, card: Locator) 
     expect(page.get_by_text("There is no such replay")).to_have_count(0)
 
 
-def test_a_person_is_forgotten_by_who_writes_the_name(
+def test_person_is_erased_after_the_name_is_typed(
     page: Page, card: Locator, complaints: list[str]
 ) -> None:
     name = "Bo Stein"

@@ -38,7 +38,7 @@ def mayday(page: Page, card: Locator, wearable: Wearable) -> Locator:
 @pytest.mark.parametrize(
     ("theme", "name"), [("light", "Light"), ("dark", "Dark"), ("red", "Red light")]
 )
-def test_each_theme_is_kept_and_can_be_used_by_everybody(
+def test_theme_is_kept_and_accessible(
     page: Page, mayday: Locator, tmp_path: Path, theme: str, name: str
 ) -> None:
     choose_theme(page, name)
@@ -58,7 +58,7 @@ def test_each_theme_is_kept_and_can_be_used_by_everybody(
     expect(mayday).to_contain_text("Emergency", ignore_case=True)  # not by its colour
 
 
-def test_keys_open_what_buttons_open_and_send_nothing(page: Page, mayday: Locator) -> None:
+def test_shortcuts_open_dialogs_and_send_nothing(page: Page, mayday: Locator) -> None:
     sent: list[str] = []
     page.on("request", lambda one: sent.append(one.url) if one.method != "GET" else None)
     dialog = page.get_by_role("dialog")
@@ -107,7 +107,7 @@ _CAPITALS_PX = """
 """
 
 
-def test_the_wall_is_read_from_2_m(page: Page, mayday: Locator, tmp_path: Path) -> None:
+def test_wall_display_is_legible_from_2_m(page: Page, mayday: Locator, tmp_path: Path) -> None:
     page.set_viewport_size({"width": 1920, "height": 1080})
     menu(page, "Display").get_by_role("checkbox", name="Names, state and floor").check()
     close(page.get_by_role("dialog"))
@@ -152,7 +152,7 @@ def test_targets_for_gloves_are_15_mm(page: Page, mayday: Locator, tmp_path: Pat
     close(page.get_by_role("dialog"))
 
 
-def test_an_emergency_sounds_as_the_standard_says_and_is_spoken_by_choice(
+def test_emergency_sounds_as_in_the_standard_and_is_spoken_optionally(
     page: Page, card: Locator, mayday: Locator
 ) -> None:
     page.evaluate(
@@ -202,7 +202,7 @@ def test_the_board_is_printed_black_on_white(page: Page, card: Locator, tmp_path
     close(dialog)
 
 
-def test_a_reload_without_the_station_says_that_it_is_away(
+def test_reload_without_the_station_shows_that_it_is_away(
     page: Page, card: Locator, station: StationProcess
 ) -> None:
     page.evaluate("navigator.serviceWorker.ready.then(() => true)")

@@ -41,7 +41,7 @@ def test_a_roll_call_is_received_and_acknowledged(
     close(dialog)
 
 
-def test_par_is_confirmed_by_radio_and_that_is_undone(page: Page, card: Locator) -> None:
+def test_confirmation_of_par_by_radio_can_be_undone(page: Page, card: Locator) -> None:
     clock = page.get_by_role("button", name="until the next PAR")
     expect(clock).to_contain_text(re.compile(r"PAR 0?\d:\d\d"))
     clock.click()
@@ -61,9 +61,7 @@ def test_par_is_confirmed_by_radio_and_that_is_undone(page: Page, card: Locator)
     expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"))
 
 
-def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(
-    page: Page, card: Locator, wearable: Wearable
-) -> None:
+def test_rare_actions_are_on_the_chosen_card(page: Page, card: Locator, wearable: Wearable) -> None:
     card.get_by_role("button", name=NAME).click()
     actions = card.get_by_role("group", name=f"For {NAME}")
     actions.get_by_role("button", name="To rehab").click()
@@ -128,7 +126,7 @@ def test_a_message_stays_on_the_card_until_it_is_answered(page: Page, card: Loca
     expect(card).to_contain_text("Message: Come to the stairs")
 
 
-def test_a_unit_says_that_it_cannot_notify_and_later_that_it_has(
+def test_unit_reports_that_it_cannot_notify_and_later_that_it_has(
     page: Page, card: Locator, wearable: Wearable
 ) -> None:
     wearable.describe()
@@ -146,7 +144,7 @@ def test_a_unit_says_that_it_cannot_notify_and_later_that_it_has(
     expect(card.locator(".not-notifiable")).to_have_count(0)
 
 
-def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator) -> None:
+def test_roll_call_and_plan_are_accessible(page: Page, card: Locator) -> None:
     page.get_by_role("button", name="until the next PAR").click()
     assert barriers(page) == []
     close(page.get_by_role("dialog"))

@@ -64,7 +64,7 @@ def draws_no_more(page: Page, colour: str, than: int) -> bool:
     return not draws(page, colour, than)
 
 
-def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -> None:
+def test_each_kind_of_trail_is_drawn_and_removed(page: Page, card: Locator) -> None:
     incident_id = answer_to(page, "incidents")[0]["incident_id"]
     trails = f"incidents/{incident_id}/trails?kind=raw"
     until(lambda: len(answer_to(page, trails)["trails"][0]["points"]) > 1, "somebody has walked")
@@ -90,7 +90,7 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
     kinds.get_by_role("button", name="Close").click()
 
 
-def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
+def test_escape_ends_a_plan_tool(page: Page, card: Locator) -> None:
     page.get_by_role("button", name="Set common start").click()
     form = page.get_by_role("form", name="Set common start")
     expect(form).to_contain_text(NAME)
@@ -98,7 +98,7 @@ def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -
     expect(form).to_have_count(0)
 
 
-def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Locator) -> None:
+def test_common_position_is_set_at_the_start_or_now(page: Page, card: Locator) -> None:
     for when, is_now in (("at the start", False), ("now", True)):
         page.get_by_role("button", name="Set common start").click()
         form = page.get_by_role("form", name="Set common start")
@@ -115,7 +115,7 @@ def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Loc
         expect(page.get_by_text("Pins 1")).to_have_count(0)
 
 
-def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator) -> None:
+def test_plan_is_georeferenced_with_two_clicks(page: Page, card: Locator) -> None:
     for _ in range(2):
         page.get_by_role("button", name="Zoom out").click()
     menu(page, "Site").get_by_role("button", name="Align by two points").click()
@@ -139,7 +139,7 @@ def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator)
     assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.01)
 
 
-def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
+def test_plan_is_georeferenced_by_an_uploaded_map(
     page: Page, card: Locator, tmp_path: Path
 ) -> None:
     """Two clicks on the plan and two on the map; then the map lies behind the plan."""

@@ -158,7 +158,7 @@ def test_an_officer_sees_all_stations_and_finds_people(
 
 
 @pytest.mark.parametrize("locale", ["en-GB", "de-DE", "fr-FR"])
-def test_the_page_is_whole_in_each_language_and_without_barriers(
+def test_page_is_complete_in_each_language_and_accessible(
     chromium: Browser, place: Place, tmp_path: Path, locale: str
 ) -> None:
     page, language = open_page(chromium, place, locale), locale[:2]

@@ -47,7 +47,7 @@ OPENERS: list[tuple[Callable[[Page, str], Locator], str]] = [
 
 
 @pytest.mark.parametrize(("find", "name"), OPENERS)
-def test_keys_stay_in_a_dialog_and_escape_goes_back_to_what_opened_it(
+def test_focus_stays_in_a_dialog_and_escape_returns_it(
     stage: Stage, find: Callable[[Page, str], Locator], name: str
 ) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=ALL)
@@ -78,7 +78,7 @@ FORMS: dict[str, Callable[[Locator], Locator]] = {
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_who_opens_a_form_writes_at_once(stage: Stage, name: str) -> None:
+def test_opened_form_has_the_focus(stage: Stage, name: str) -> None:
     page, _ = stage.open(NO_INCIDENT, answers=ALL)
     page.get_by_role("button", name=name, exact=True).press("Enter")
     expect(FORMS[name](page.get_by_role("dialog"))).to_be_focused()
@@ -88,7 +88,7 @@ def test_who_opens_a_form_writes_at_once(stage: Stage, name: str) -> None:
     ("opener", "leads_to"),
     [("Account", "Users"), ("Account", "Audit log"), ("Incidents", "Accuracy report")],
 )
-def test_from_a_dialog_that_another_led_to_keys_go_back_to_the_first_button(
+def test_focus_returns_from_a_second_dialog_to_the_first_button(
     stage: Stage, opener: str, leads_to: str
 ) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
@@ -100,7 +100,7 @@ def test_from_a_dialog_that_another_led_to_keys_go_back_to_the_first_button(
     expect(entry(page, opener)).to_be_focused()
 
 
-def test_where_the_menu_is_behind_a_button_keys_go_back_to_that(stage: Stage) -> None:
+def test_focus_returns_to_the_menu_button(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), "tablet", ALL)
     button = page.get_by_role("button", name="Menu")
     button.press("Enter")
@@ -110,7 +110,7 @@ def test_where_the_menu_is_behind_a_button_keys_go_back_to_that(stage: Stage) ->
     expect(button).to_be_focused()
 
 
-def test_a_menu_that_lies_over_the_alarms_goes_with_escape_and_with_a_press_beside_it(
+def test_menu_closes_with_escape_and_with_a_press_outside(
     stage: Stage,
 ) -> None:
     page, _ = stage.open(scenes.bad_minute(), "tablet", ALL)
@@ -127,7 +127,7 @@ def test_a_menu_that_lies_over_the_alarms_goes_with_escape_and_with_a_press_besi
     expect(units).to_be_hidden()
 
 
-def test_a_dialog_says_that_the_station_is_not_received(stage: Stage) -> None:
+def test_dialog_shows_that_the_station_is_not_received(stage: Stage) -> None:
     """The red banner stands behind it, and who ticks people off would not see it."""
     page, station = stage.open(scenes.bad_minute(), answers=ALL)
     page.locator(".par-clock").press("Enter")
@@ -138,7 +138,7 @@ def test_a_dialog_says_that_the_station_is_not_received(stage: Stage) -> None:
     expect(lost).to_contain_text(re.compile(r"\d\ss ago"))
 
 
-def test_times_that_were_changed_are_stated_to_be(stage: Stage) -> None:
+def test_changed_times_are_confirmed(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Incidents").click()
     dialog = page.get_by_role("dialog")
@@ -151,7 +151,7 @@ def test_times_that_were_changed_are_stated_to_be(stage: Stage) -> None:
     expect(done).to_have_count(0)
 
 
-def test_times_that_were_refused_are_not_stated_to_be_changed(stage: Stage) -> None:
+def test_refused_times_are_not_confirmed(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     refusal = {"detail": "It is closed."}
     page.route("**/accountability", lambda route: route.fulfill(status=409, json=refusal))
@@ -162,7 +162,7 @@ def test_times_that_were_refused_are_not_stated_to_be_changed(stage: Stage) -> N
     expect(dialog.get_by_text("The times are changed.")).to_have_count(0)
 
 
-def test_a_new_password_of_a_user_is_stated_to_be_set(stage: Stage) -> None:
+def test_new_password_of_a_user_is_confirmed(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Account").click()
     page.get_by_role("button", name="Users").click()
@@ -182,7 +182,7 @@ def change_own_password(page: Page) -> None:
     dialog.get_by_role("button", name="Change password").click()
 
 
-def test_who_mistypes_the_old_password_is_reported_so_and_goes_on_watching(stage: Stage) -> None:
+def test_wrong_old_password_is_refused_and_the_console_continues(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=ALL)
     refusal = {"detail": "The old password is wrong."}
     page.route("**/me/password", lambda route: route.fulfill(status=403, json=refusal))
@@ -193,7 +193,7 @@ def test_who_mistypes_the_old_password_is_reported_so_and_goes_on_watching(stage
     expect(page.get_by_role("region", name="Open alarms")).to_be_visible()
 
 
-def test_after_a_new_password_the_login_form_says_so_and_takes_the_user(stage: Stage) -> None:
+def test_login_form_reports_the_new_password_and_has_the_focus(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     change_own_password(page)
     expect(page.get_by_role("status").filter(has_text="The password is changed.")).to_be_visible()
@@ -204,9 +204,7 @@ def test_after_a_new_password_the_login_form_says_so_and_takes_the_user(stage: S
     ("asks", "field"),
     [("Change Li Na", "Name"), ("Delete data … Li Na", "Type “Li Na” to confirm")],
 )
-def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_back(
-    stage: Stage, asks: str, field: str
-) -> None:
+def test_inline_form_takes_and_returns_the_focus(stage: Stage, asks: str, field: str) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "People").press("Enter")
     dialog = page.get_by_role("dialog")
@@ -217,7 +215,7 @@ def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_bac
     expect(button).to_be_focused()
 
 
-def test_another_rate_of_positions_is_stated_to_be_set(stage: Stage) -> None:
+def test_changed_position_rate_is_confirmed(stage: Stage) -> None:
     """The list says no more which one it was."""
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Units").click()
@@ -226,7 +224,7 @@ def test_another_rate_of_positions_is_stated_to_be_set(stage: Stage) -> None:
     expect(row.get_by_role("status")).to_have_text("5 Hz requested.")
 
 
-def test_a_base_map_that_was_set_is_stated_to_be(stage: Stage, tmp_path: Path) -> None:
+def test_base_map_is_confirmed(stage: Stage, tmp_path: Path) -> None:
     page, _ = stage.open(scenes.quiet(), answers={**ALL, "PUT /site/base-map": BASE_MAP})
     entry(page, "Site").click()
     dialog = page.get_by_role("dialog")
@@ -239,7 +237,7 @@ def test_a_base_map_that_was_set_is_stated_to_be(stage: Stage, tmp_path: Path) -
     expect(dialog.get_by_role("status").filter(has_text="The base map is set.")).to_be_visible()
 
 
-def test_what_has_the_focus_in_a_dialog_is_not_under_what_stands_over_it(stage: Stage) -> None:
+def test_focused_control_is_not_covered_by_the_dialogs_header(stage: Stage) -> None:
     """Its head stays where it is while it scrolls, with what cannot wait."""
     page, _ = stage.open(scenes.crowd(), "laptop at 200 %", ALL)
     page.locator(".par-clock").press("Enter")

@@ -25,7 +25,7 @@ MOVED = """
 
 @pytest.mark.parametrize("screen", ["phone", "phone on its side"])
 @pytest.mark.parametrize("is_open", [True, False], ids=["incident", "no incident"])
-def test_nothing_that_can_be_pressed_moves_as_answers_come(
+def test_controls_keep_their_place_as_answers_arrive(
     stage: Stage, screen: str, is_open: bool
 ) -> None:
     picture = scenes.bad_minute()

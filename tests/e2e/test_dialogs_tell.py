@@ -12,7 +12,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 
-def test_a_button_that_does_nothing_yet_looks_so(stage: Stage) -> None:
+def test_disabled_button_looks_disabled(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     site = menu(page, "Site")
     idle, ready = (
@@ -22,7 +22,7 @@ def test_a_button_that_does_nothing_yet_looks_so(stage: Stage) -> None:
     assert idle != ready
 
 
-def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -> None:
+def test_escape_closes_the_dialog_and_keeps_the_plan_tool(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     page.get_by_role("button", name="Beacon", exact=True).click()
     panel = page.get_by_role("form", name="Beacon")
@@ -35,7 +35,7 @@ def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -
     expect(panel).to_have_count(0)
 
 
-def test_what_a_dialog_could_not_do_is_stated_in_it(stage: Stage) -> None:
+def test_failure_of_a_dialog_is_shown_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())
     menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
@@ -46,7 +46,7 @@ def test_what_a_dialog_could_not_do_is_stated_in_it(stage: Stage) -> None:
     assert flaws(page) == []
 
 
-def test_a_photo_that_is_refused_adds_nobody_twice(stage: Stage, tmp_path: Path) -> None:
+def test_refused_photo_does_not_add_the_person_twice(stage: Stage, tmp_path: Path) -> None:
     """Who adds a person and is told that the photo is none may press again."""
     page, _ = stage.open(scenes.quiet())
     added = {**scenes.PEOPLE[0], "person_id": "new"}

@@ -59,7 +59,7 @@ def send(folder: Path, station: StationProcess, token: str, content: str) -> str
     return done.output
 
 
-def test_a_report_is_offered_with_what_the_station_knows_of_it(
+def test_dispatch_is_offered_with_its_known_details(
     page: Page, station: StationProcess, token: str, tmp_path: Path, complaints: list[str]
 ) -> None:
     reported = send(tmp_path, station, token, json.dumps(REPORT))
@@ -99,7 +99,7 @@ def test_a_person_opens_the_incident_and_accepts_the_position(page: Page) -> Non
     assert (anchor["lat_deg"], anchor["lon_deg"]) == (52.5, 13.4)
 
 
-def test_a_later_report_changes_what_is_known_and_nothing_else(
+def test_updated_dispatch_changes_only_its_details(
     page: Page, station: StationProcess, token: str, tmp_path: Path
 ) -> None:
     update = REPORT | {"address": "Main St 7", "units": ["E12", "L4", "M3"], "ended": True}
@@ -114,7 +114,7 @@ def test_a_later_report_changes_what_is_known_and_nothing_else(
     expect(page.get_by_role("heading", level=1)).to_have_text("Structure fire, Main St 5")
 
 
-def test_another_dispatch_meanwhile_moves_nothing_and_is_announced(
+def test_second_dispatch_is_announced_and_moves_nothing(
     page: Page, station: StationProcess, token: str, tmp_path: Path
 ) -> None:
     people = page.get_by_role("region", name="People")
@@ -160,7 +160,7 @@ def test_an_alert_is_drawn_until_it_is_cancelled(
     assert "cancelled" in send(tmp_path, station, token, cancel)
 
 
-def test_it_is_in_the_report_and_in_the_list_of_incidents(page: Page) -> None:
+def test_dispatch_is_in_the_report_and_the_list_of_incidents(page: Page) -> None:
     confirm(menu(page, "Incidents"), "Close this incident")
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_role("row").filter(has_text=f"Dispatch {NUMBER}")).to_be_visible()
@@ -175,7 +175,7 @@ def test_it_is_in_the_report_and_in_the_list_of_incidents(page: Page) -> None:
 
 
 @pytest.mark.parametrize("screen", ["laptop", "phone"])
-def test_a_long_report_fits_and_several_are_counted(stage: Stage, screen: str) -> None:
+def test_long_dispatch_fits_and_several_are_counted(stage: Stage, screen: str) -> None:
     reports = tuple(
         scenes.dispatch(
             str(number),

@@ -64,7 +64,7 @@ def scanned(page: Page) -> str:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_camera_reads_the_code_off_the_screen(
+def test_enrolment_code_is_readable_by_a_camera(
     stage: Stage, enrolment: Enrolment, scheme: str
 ) -> None:
     page, _ = opened(stage, enrolment)
@@ -75,9 +75,7 @@ def test_a_camera_reads_the_code_off_the_screen(
     assert barriers(page) == []
 
 
-def test_the_text_is_there_for_a_unit_that_no_camera_reaches(
-    stage: Stage, enrolment: Enrolment
-) -> None:
+def test_enrolment_text_is_available_without_a_camera(stage: Stage, enrolment: Enrolment) -> None:
     page, _ = opened(stage, enrolment)
     shown = enrol(dialog_of(page))
     text = shown.locator("details code")
@@ -86,7 +84,9 @@ def test_the_text_is_there_for_a_unit_that_no_camera_reaches(
     assert parse_enrolment(text.inner_text()) == enrolment
 
 
-def test_it_is_shown_once_and_asks_before_it_goes(stage: Stage, enrolment: Enrolment) -> None:
+def test_enrolment_is_shown_once_and_its_closing_is_confirmed(
+    stage: Stage, enrolment: Enrolment
+) -> None:
     page, station = opened(stage, enrolment)
     dialog = dialog_of(page)
     shown = enrol(dialog)
@@ -103,7 +103,9 @@ def test_it_is_shown_once_and_asks_before_it_goes(stage: Stage, enrolment: Enrol
     station.expect_changes("/enrolments", "/enrolments")
 
 
-def test_a_renewal_says_first_that_the_old_one_goes_on(stage: Stage, enrolment: Enrolment) -> None:
+def test_renewal_states_that_the_old_certificate_stays_valid(
+    stage: Stage, enrolment: Enrolment
+) -> None:
     page, station = opened(stage, enrolment)
     dialog = dialog_of(page)
     row = dialog.get_by_role("row").filter(has_text="FF-07")
@@ -116,7 +118,7 @@ def test_a_renewal_says_first_that_the_old_one_goes_on(stage: Stage, enrolment: 
     station.expect_changes("/enrolments")
 
 
-def test_a_refusal_is_stated_in_the_dialog(stage: Stage, enrolment: Enrolment) -> None:
+def test_refusal_is_shown_in_the_dialog(stage: Stage, enrolment: Enrolment) -> None:
     page, _ = opened(stage, enrolment)
     reason = "An enrolment holds a private key: serve the console over TLS."
     page.route(
@@ -134,14 +136,14 @@ def test_a_refusal_is_stated_in_the_dialog(stage: Stage, enrolment: Enrolment) -
     expect(dialog.get_by_label("Unit id")).to_have_value("FF-33")
 
 
-def test_only_an_administrator_is_offered_it(stage: Stage, enrolment: Enrolment) -> None:
+def test_enrolment_is_offered_to_administrators_only(stage: Stage, enrolment: Enrolment) -> None:
     page, _ = opened(stage, enrolment, "commander")
     dialog = menu(page, "Units")
     dialog.get_by_role("button", name="Register unit").wait_for()
     expect(dialog.get_by_role("button", name="Enrolments")).to_have_count(0)
 
 
-def test_it_fits_every_screen(stage: Stage, enrolment: Enrolment) -> None:
+def test_enrolment_dialog_fits_every_screen(stage: Stage, enrolment: Enrolment) -> None:
     page, _ = opened(stage, enrolment)
     dialog = dialog_of(page)
     found = {}

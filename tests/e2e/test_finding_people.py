@@ -29,7 +29,7 @@ def cards(page: Page) -> Locator:
 
 
 @pytest.mark.parametrize("count", [40, 200])
-def test_the_headcount_adds_up_and_each_count_shows_those_alone(stage: Stage, count: int) -> None:
+def test_headcount_adds_up_and_each_count_filters_the_list(stage: Stage, count: int) -> None:
     page, _ = stage.open(scenes.mixed(count))
     counts = dict.fromkeys(("On scene", "Inside", "Outside", "Rehab", "Not located"), 0)
     for word in (*counts, "Never heard"):
@@ -47,7 +47,7 @@ def test_the_headcount_adds_up_and_each_count_shows_those_alone(stage: Stage, co
     expect(cards(page)).to_have_count(count)
 
 
-def test_a_slash_leads_to_the_search_by_name_unit_and_crew(stage: Stage) -> None:
+def test_slash_focuses_the_search_by_name_unit_and_crew(stage: Stage) -> None:
     page, _ = stage.open(scenes.mixed())
     page.keyboard.press("/")
     expect(search(page)).to_be_focused()
@@ -64,7 +64,7 @@ def test_a_slash_leads_to_the_search_by_name_unit_and_crew(stage: Stage) -> None
     close(dialog)
 
 
-def test_who_is_chosen_or_down_is_seen_whatever_is_sought(stage: Stage) -> None:
+def test_chosen_member_and_casualties_are_listed_in_every_search(stage: Stage) -> None:
     page, _ = stage.open(scenes.mixed())
     search(page).fill("ladder")
     expect(page.locator(".casualties")).to_contain_text("Jonas Bergman")
@@ -73,7 +73,7 @@ def test_who_is_chosen_or_down_is_seen_whatever_is_sought(stage: Stage) -> None:
     expect(page.locator(".card.chosen .name")).to_have_text("Jonas Bergman")
 
 
-def test_on_a_phone_the_search_comes_when_it_is_asked_for(stage: Stage) -> None:
+def test_search_on_a_phone_opens_on_request(stage: Stage) -> None:
     page, _ = stage.open(scenes.mixed(), "phone")
     expect(search(page)).to_be_hidden()
     page.get_by_role("button", name="Find", exact=True).click()
@@ -103,7 +103,7 @@ def test_crews_fold_with_their_counts(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_sixty_people_are_on_one_screen_in_a_line_each(stage: Stage, scheme: str) -> None:
+def test_sixty_people_fit_one_screen_in_compact_lines(stage: Stage, scheme: str) -> None:
     page, _ = stage.open(scenes.mixed(200), "large")
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.get_by_role("button", name="One line each").click()
@@ -129,7 +129,7 @@ def test_lines_fit_every_screen(stage: Stage) -> None:
     expect(page.locator(".card.chosen")).to_contain_text("Position")
 
 
-def test_the_whole_card_is_pressed_but_for_what_it_has_buttons_for(stage: Stage) -> None:
+def test_press_anywhere_on_a_card_chooses_it_except_on_buttons(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     heat = page.locator(".card", has_text="Mira Okafor")
     heat.locator(".facts").click()
@@ -140,7 +140,7 @@ def test_the_whole_card_is_pressed_but_for_what_it_has_buttons_for(stage: Stage)
     expect(stranger).not_to_have_class(re.compile("chosen"))
 
 
-def test_a_press_at_once_after_a_card_moved_is_ignored(stage: Stage) -> None:
+def test_press_directly_after_a_card_moved_is_ignored(stage: Stage) -> None:
     """It was meant for who stood there before."""
     page, station = stage.open(scenes.quiet())
     second = page.locator(".card").nth(1)

@@ -22,9 +22,7 @@ def first_page(chromium: Browser, station: StationProcess) -> Page:
     return page
 
 
-def test_the_first_password_is_changed_before_anything_is_shown(
-    chromium: Browser, tmp_path: Path
-) -> None:
+def test_first_password_must_be_changed_before_use(chromium: Browser, tmp_path: Path) -> None:
     station = StationProcess(tmp_path / "station")
     station.start()
     try:

@@ -46,7 +46,7 @@ def hostile() -> Snapshot:
     return msgspec.structs.replace(picture, plan=msgspec.Raw(plan))
 
 
-def test_a_name_that_is_html_is_shown_as_it_was_written(stage: Stage) -> None:
+def test_html_in_a_name_is_shown_as_text(stage: Stage) -> None:
     answers = {path: trapped(answer) for path, answer in ANSWERS.items()}
     page, _ = stage.open(hostile(), answers={**answers, "/me": ANSWERS["/me"]})
     card = page.locator(f"[data-unit='{scenes.unit_id(1)}']")

@@ -79,7 +79,7 @@ def test_a_track_and_a_photograph_are_on_the_plan_of_a_replay(stage: Stage, tmp_
     assert painted(page, "--text") < without + 50, "nothing of the time to come"
 
 
-def test_files_are_brought_in_and_taken_out_of_the_list(stage: Stage, tmp_path: Path) -> None:
+def test_files_are_imported_and_removed_in_the_list(stage: Stage, tmp_path: Path) -> None:
     page, station = stage.open(scenes.quiet(), answers=answers())
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name=f"Brought in: {scenes.INCIDENT.name}").click()

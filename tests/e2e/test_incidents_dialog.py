@@ -15,7 +15,7 @@ from tests.e2e.console_page import menu
 from tests.e2e.stage import ANSWERS, PAST, Stage
 
 
-def test_an_incident_is_saved_or_it_is_stated_why_not_and_the_console_stays(stage: Stage) -> None:
+def test_incident_is_saved_or_the_failure_is_shown(stage: Stage) -> None:
     saved = {
         f"{PAST}/export/csv?fused": "unit_id,person",
         f"{PAST}/export/csv?smoothed": "known since",
@@ -52,7 +52,7 @@ def test_an_incident_is_saved_or_it_is_stated_why_not_and_the_console_stays(stag
     )
 
 
-def test_an_incident_begins_with_the_times_that_the_station_has(stage: Stage) -> None:
+def test_incident_starts_with_the_times_of_the_station(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), incident=None))
     dialog = menu(page, "Incidents")
     expect(dialog.get_by_label("PAR every, min")).to_have_value("15")
@@ -77,7 +77,7 @@ def test_incidents_are_searched_for_by_words(stage: Stage) -> None:
     expect(dialog.get_by_role("table", name="Incidents with: mayday &lane")).to_be_visible()
 
 
-def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:
+def test_times_with_seconds_are_kept(stage: Stage) -> None:
     incident = msgspec.structs.replace(scenes.INCIDENT, par_interval_s=90.0)
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), incident=incident))
     dialog = menu(page, "Incidents")
@@ -87,7 +87,7 @@ def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:
     assert sent.value.post_data_json == {"par_interval_s": 90, "work_limit_s": 1800}
 
 
-def test_the_last_hour_is_the_station_s_whatever_the_browser_s_clock_says(stage: Stage) -> None:
+def test_last_hour_is_by_the_clock_of_the_station(stage: Stage) -> None:
     page, station = stage.open(msgspec.structs.replace(scenes.quiet(), incident=None))
     page.clock.set_fixed_time(datetime.fromtimestamp(scenes.NOW_MS / 1000, UTC) + timedelta(days=2))
     station.change()

@@ -79,7 +79,7 @@ def open_dialogs(page: Page) -> list[Locator]:
 
 
 @pytest.mark.parametrize(("locale", "language"), [("de-DE", "de"), ("fr-FR", "fr")])
-def test_the_console_is_whole_in_the_language_of_the_browser(
+def test_console_is_complete_in_the_language_of_the_browser(
     stage: Stage, tmp_path: Path, locale: str, language: str
 ) -> None:
     page, _ = stage.open(scenes.bad_minute(), locale=locale)
@@ -108,9 +108,7 @@ def test_the_console_is_whole_in_the_language_of_the_browser(
 
 
 @pytest.mark.parametrize("locale", ["en-GB", "de-DE", "fr-FR"])
-def test_every_language_has_the_room_that_its_words_need(
-    stage: Stage, tmp_path: Path, locale: str
-) -> None:
+def test_texts_of_every_language_fit(stage: Stage, tmp_path: Path, locale: str) -> None:
     page, _ = stage.open(scenes.quiet(), locale=locale)
     page.set_viewport_size({"width": 1440, "height": 900})
     expect(page.locator(".header .light.good")).to_have_count(2)
@@ -134,7 +132,7 @@ def test_every_language_has_the_room_that_its_words_need(
         assert dialog.evaluate(BEYOND_PX) <= 0, width
 
 
-def test_a_chosen_language_comes_at_once_and_is_kept(stage: Stage) -> None:
+def test_chosen_language_applies_at_once_and_is_kept(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     page.locator("#menu").get_by_role("button", name="Display").click()
     page.get_by_role("radio", name="Deutsch").check()
@@ -145,7 +143,7 @@ def test_a_chosen_language_comes_at_once_and_is_kept(stage: Stage) -> None:
     expect(page.locator("#menu").get_by_role("button", name="Anzeige")).to_be_visible()
 
 
-def test_feet_fahrenheit_and_american_floors(stage: Stage, tmp_path: Path) -> None:
+def test_imperial_units_and_american_floors_are_shown(stage: Stage, tmp_path: Path) -> None:
     kept = {"muster-units": "imperial", "muster-floors": "american"}
     page, _ = stage.open(scenes.bad_minute(), kept=kept)
     page.screenshot(path=tmp_path / "imperial.png")

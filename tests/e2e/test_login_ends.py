@@ -38,7 +38,7 @@ def write_a_message(page: Page) -> Locator:
     return text
 
 
-def test_a_message_that_was_being_written_is_there_after_the_login(stage: Stage) -> None:
+def test_unsent_message_is_kept_over_a_login(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute(), answers=answers())
     text = write_a_message(page)
     station.end_logins()
@@ -55,7 +55,7 @@ def test_a_message_that_was_being_written_is_there_after_the_login(stage: Stage)
     station.expect_changes("/login", "/commands")
 
 
-def test_what_is_live_goes_on_after_the_login(stage: Stage) -> None:
+def test_live_view_continues_after_the_login(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute(), answers=answers())
     station.end_logins()
     log_in(page)
@@ -67,7 +67,7 @@ def test_what_is_live_goes_on_after_the_login(stage: Stage) -> None:
     assert flaws(page) == []
 
 
-def test_a_press_that_meets_an_ended_login_loses_nothing(stage: Stage) -> None:
+def test_message_sent_after_the_end_of_the_login_is_kept(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=answers())
     text = write_a_message(page)
     page.route(
@@ -80,7 +80,7 @@ def test_a_press_that_meets_an_ended_login_loses_nothing(stage: Stage) -> None:
     expect(text).to_have_value("Leave by the north stairs")
 
 
-def test_a_pin_that_was_being_set_is_there_after_the_login(stage: Stage) -> None:
+def test_unsaved_pin_is_kept_over_a_login(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute(), answers=answers())
     card = page.locator(".card").first
     card.get_by_role("button").first.click()
@@ -113,7 +113,7 @@ def replay_an_incident(stage: Stage, username: str = "chief") -> tuple[Page, Pla
     return page, station
 
 
-def test_a_replay_goes_on_where_it_was_after_the_login(stage: Stage) -> None:
+def test_replay_continues_at_its_time_after_the_login(stage: Stage) -> None:
     page, station = replay_an_incident(stage)
     with page.expect_request("**/api/v1/replays/r2") as asked:
         log_in(page)
@@ -128,7 +128,7 @@ def test_a_replay_goes_on_where_it_was_after_the_login(stage: Stage) -> None:
     station.expect_changes("/replays", "/login", "/replays/r2")
 
 
-def test_a_replay_that_the_station_has_ended_meanwhile_is_begun_again(stage: Stage) -> None:
+def test_replay_ended_by_the_station_is_opened_again(stage: Stage) -> None:
     """Nobody looked at it for a minute."""
     page, station = replay_an_incident(stage)
     gone = {"detail": "There is no such replay; it may have ended."}
@@ -146,7 +146,7 @@ def test_a_replay_that_the_station_has_ended_meanwhile_is_begun_again(stage: Sta
     expect(page.locator(".console")).to_have_class(re.compile("live"))
 
 
-def test_nobody_else_gets_the_replay_that_person_looked_at(stage: Stage) -> None:
+def test_replay_is_not_shown_to_another_user(stage: Stage) -> None:
     page, station = replay_an_incident(stage, "deputy")
     log_in(page, "deputy")
     expect(page.get_by_role("region", name="Replay")).to_have_count(0)
@@ -154,7 +154,7 @@ def test_nobody_else_gets_the_replay_that_person_looked_at(stage: Stage) -> None
     station.expect_changes("/replays", "/login")
 
 
-def test_nobody_else_gets_what_person_was_writing(stage: Stage) -> None:
+def test_unsent_text_is_not_shown_to_another_user(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute(), answers=answers("deputy"))
     write_a_message(page)
     station.end_logins()
@@ -166,7 +166,7 @@ def test_nobody_else_gets_what_person_was_writing(stage: Stage) -> None:
     expect(text).to_have_value("")
 
 
-def test_who_logs_out_leaves_nothing(stage: Stage) -> None:
+def test_logout_clears_unsent_input(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=answers())
     page.locator(".card").first.get_by_role("button").first.click()
     page.get_by_role("button", name="Set common start").click()

@@ -40,7 +40,9 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
         scenes.par_requested,
     ],
 )
-def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
+def test_layout_has_no_cut_covered_or_small_controls(
+    stage: Stage, scene: Callable[[], Snapshot]
+) -> None:
     page, _ = stage.open(scene())
     assert on_every_screen(page, flaws) == {}
 
@@ -71,7 +73,7 @@ def test_a_long_crew_and_role_take_two_lines_of_a_card_until_it_is_chosen(stage:
         scenes.switched_off,
     ],
 )
-def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapshot]) -> None:
+def test_every_scene_is_accessible(stage: Stage, scene: Callable[[], Snapshot]) -> None:
     page, _ = stage.open(scene())
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
@@ -83,7 +85,7 @@ def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapsho
 
 
 @pytest.mark.parametrize("letters_px", [20, 24])  # browsers set 16 where nobody says otherwise
-def test_letters_are_as_large_as_person_has_set_them(stage: Stage, letters_px: int) -> None:
+def test_font_size_follows_the_browsers_setting(stage: Stage, letters_px: int) -> None:
     page, _ = stage.open(scenes.bad_minute())
     devtools = page.context.new_cdp_session(page)
     devtools.send("Page.setFontSizes", {"fontSizes": {"standard": letters_px}})
@@ -127,7 +129,7 @@ def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
     expect(names).to_contain_text("Mira Okafor 2")
 
 
-def test_nothing_of_a_dialog_lies_beside_a_phone(stage: Stage) -> None:
+def test_dialogs_fit_the_width_of_a_phone(stage: Stage) -> None:
     """Who has one hand does not look for a button to the right of the screen."""
     page, _ = stage.open(scenes.bad_minute(), "phone")
     for name in ("Incidents", "Units", "People"):
@@ -139,7 +141,7 @@ def test_nothing_of_a_dialog_lies_beside_a_phone(stage: Stage) -> None:
         close(dialog)
 
 
-def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
+def test_assessment_of_positions_fits_a_phone(stage: Stage) -> None:
     """Its tables lay beside the screen, with a word a line in rows as high as half of it."""
     answers = {**ANSWERS, f"{PAST}/assessment": scenes.ASSESSMENT}
     page, _ = stage.open(scenes.bad_minute(), "phone", answers)
@@ -155,9 +157,7 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
 
 @pytest.mark.parametrize("screen", ["phone", "phone on its side"])
 @pytest.mark.parametrize("name", ["Beacon", "Set common start"])
-def test_on_a_phone_the_plan_can_be_clicked_while_a_panel_asks_for_it(
-    stage: Stage, name: str, screen: str
-) -> None:
+def test_plan_on_a_phone_is_clickable_beside_a_panel(stage: Stage, name: str, screen: str) -> None:
     """It was as high as a finger, and zoomed out to half a kilometre."""
     page, _ = stage.open(scenes.bad_minute(), screen)
     page.get_by_role("button", name="Plan").first.click()
@@ -176,7 +176,7 @@ def test_on_a_phone_the_plan_can_be_clicked_while_a_panel_asks_for_it(
     expect(page.get_by_role("button", name=name, exact=True)).to_be_focused()
 
 
-def test_users_and_answers_are_read_on_a_phone(stage: Stage) -> None:
+def test_users_and_answers_fit_a_phone(stage: Stage) -> None:
     users = [{"username": "chief", "role": "administrator", "created_ms": 0, "sessions": 1}]
     page, _ = stage.open(scenes.answered(), "phone", {**ANSWERS, "/users": users})
     page.get_by_role("button", name="PAR", exact=True).click()
@@ -189,7 +189,7 @@ def test_users_and_answers_are_read_on_a_phone(stage: Stage) -> None:
     assert flaws(page) == []
 
 
-def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
+def test_no_panel_covers_the_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     tools = page.get_by_role("group", name="On the plan")
     for name in ("Trails", "Pins 2", "Beacon", "Set common start"):
@@ -202,7 +202,7 @@ def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("screen", ["laptop", "tablet upright", "phone"])
-def test_evacuate_is_at_hand_however_far_the_list_is_scrolled(stage: Stage, screen: str) -> None:
+def test_evacuate_button_is_visible_at_any_scroll_position(stage: Stage, screen: str) -> None:
     page, _ = stage.open(scenes.crowd(), screen)
     evacuate = page.get_by_role("button", name="Evacuate")
     last = page.locator(".card").last
@@ -217,7 +217,7 @@ def test_evacuate_is_at_hand_however_far_the_list_is_scrolled(stage: Stage, scre
 
 
 @pytest.mark.parametrize(("screen", "least_px"), [("phone", 240), ("phone on its side", 100)])
-def test_in_the_past_a_phone_has_room_for_the_plan(
+def test_replay_on_a_phone_has_room_for_the_plan(
     stage: Stage, screen: str, least_px: float
 ) -> None:
     page, _ = stage.open(scenes.past(), screen)
@@ -229,7 +229,7 @@ def test_in_the_past_a_phone_has_room_for_the_plan(
     assert min(box["y"] + box["height"], footer["y"]) - box["y"] >= least_px
 
 
-def test_what_is_wrong_with_the_station_is_read_whole(stage: Stage) -> None:
+def test_problems_of_the_station_are_shown_completely(stage: Stage) -> None:
     page, _ = stage.open(scenes.overdue())
     sentence = page.get_by_role("button", name="Station health").locator(".sentence")
     expect(sentence).to_have_text(scenes.ALONE)
@@ -240,7 +240,7 @@ def test_what_is_wrong_with_the_station_is_read_whole(stage: Stage) -> None:
 ROW_PX = 52  # of buttons, with what is between two rows
 
 
-def test_in_the_past_a_tablet_shows_who_is_in_trouble_and_not_only_buttons(stage: Stage) -> None:
+def test_replay_on_a_tablet_shows_members_in_alarm(stage: Stage) -> None:
     page, _ = stage.open(scenes.overdue(), "tablet")
     page.get_by_role("button", name="Menu").click()
     menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
@@ -257,9 +257,7 @@ def test_in_the_past_a_tablet_shows_who_is_in_trouble_and_not_only_buttons(stage
 
 
 @pytest.mark.parametrize("name", ["Beacon", "Set common start"])
-def test_on_a_tablet_the_plan_can_be_clicked_while_a_panel_asks_for_it(
-    stage: Stage, name: str
-) -> None:
+def test_plan_on_a_tablet_is_clickable_beside_a_panel(stage: Stage, name: str) -> None:
     page, _ = stage.open(scenes.bad_minute(20), "tablet")
     page.get_by_role("button", name=name, exact=True).click()
     box = page.locator(".map").bounding_box()
@@ -269,7 +267,7 @@ def test_on_a_tablet_the_plan_can_be_clicked_while_a_panel_asks_for_it(
     expect(page.get_by_role("button", name=name, exact=True)).to_be_focused()
 
 
-def test_forced_colours_leave_to_be_seen_what_is_chosen_and_who_is_in_danger(stage: Stage) -> None:
+def test_forced_colours_show_the_choice_and_danger(stage: Stage) -> None:
     """The browser takes every colour away, and with them all that only colours say."""
     page, _ = stage.open(scenes.bad_minute())
     page.emulate_media(forced_colors="active")

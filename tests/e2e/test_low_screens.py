@@ -35,7 +35,7 @@ def is_seen(page: Page, what: Locator) -> bool:
 
 
 @pytest.mark.parametrize("screen", LOW)
-def test_who_is_down_is_read_beneath_the_alarms(stage: Stage, screen: str) -> None:
+def test_casualty_is_readable_below_the_alarms(stage: Stage, screen: str) -> None:
     """The top of the card alone was seen: neither what is the matter nor where."""
     page, _ = stage.open(scenes.bad_minute(), screen)
     card = page.locator(".card").first
@@ -54,7 +54,7 @@ def test_who_is_down_is_read_beneath_the_alarms(stage: Stage, screen: str) -> No
 
 
 @pytest.mark.parametrize("screen", LOW)
-def test_who_was_chosen_is_seen_by_name_with_what_can_be_done(stage: Stage, screen: str) -> None:
+def test_chosen_member_is_visible_with_its_actions(stage: Stage, screen: str) -> None:
     page, _ = stage.open(scenes.bad_minute(), screen)
     card = page.locator(".card").first
     card.get_by_role("button").first.click()

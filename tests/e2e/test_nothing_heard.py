@@ -13,7 +13,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 
-def test_what_is_old_looks_old_when_the_station_is_gone(stage: Stage) -> None:
+def test_data_is_shown_as_old_without_the_station(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     expect(page).to_have_title("(4!) Muster")
     station.fall_silent()
@@ -25,7 +25,7 @@ def test_what_is_old_looks_old_when_the_station_is_gone(stage: Stage) -> None:
     assert barriers(page) == []
 
 
-def test_a_picture_of_before_a_sleep_says_when_it_was(stage: Stage) -> None:
+def test_state_from_before_a_sleep_shows_its_time(stage: Stage) -> None:
     """Whatever time has gone by unheard."""
     page, station = stage.open(scenes.quiet())
     page.clock.pause_at(datetime.now(UTC) + timedelta(seconds=1))
@@ -39,7 +39,7 @@ def test_a_picture_of_before_a_sleep_says_when_it_was(stage: Stage) -> None:
     expect(banner).to_contain_text(f"This picture is from {received} ")
 
 
-def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage: Stage) -> None:
+def test_state_from_before_a_sleep_is_shown_as_old_at_once(stage: Stage) -> None:
     """On many machines the steady clock stands in a sleep, and only the time of day goes on."""
     page, station = stage.open(scenes.quiet())
     station.change()
@@ -49,7 +49,7 @@ def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage
     expect(page.locator(".card").first).to_contain_text("1 h 00 min old")
 
 
-def test_whose_login_has_ended_is_reported_so(stage: Stage) -> None:
+def test_ended_login_is_reported(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     station.end_logins()
     expect(page.get_by_role("status").filter(has_text="This login has ended")).to_be_visible()

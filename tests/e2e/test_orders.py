@@ -30,7 +30,7 @@ def captions(page: Page, order: str) -> list[str]:
     return found
 
 
-def test_under_evacuate_now_no_other_order_has_ticks(stage: Stage) -> None:
+def test_evacuate_dialog_lists_no_answers_to_other_orders(stage: Stage) -> None:
     """They would be taken for this one's, also those of an evacuation that is over."""
     par = scenes.order("c1", "par_request", ACKNOWLEDGED, is_open=False)
     over = scenes.order(
@@ -42,7 +42,7 @@ def test_under_evacuate_now_no_other_order_has_ticks(stage: Stage) -> None:
     assert sorted(captions(page, "Message")) == ["Evacuate", "PAR"]  # all of the incident
 
 
-def test_of_an_evacuation_who_has_not_answered_stands_first(stage: Stage) -> None:
+def test_units_without_answer_are_first_in_an_evacuation(stage: Stage) -> None:
     states = {
         "FF-01": "acknowledged",
         "FF-02": "received",
@@ -65,7 +65,7 @@ def test_of_an_evacuation_who_has_not_answered_stands_first(stage: Stage) -> Non
     station.expect_changes("/commands/c1/confirm")
 
 
-def test_an_evacuation_that_all_have_acknowledged_stays_until_the_all_clear(stage: Stage) -> None:
+def test_acknowledged_evacuation_stays_until_the_all_clear(stage: Stage) -> None:
     sent = scenes.order("c1", "evacuate", {"FF-01": "queued"})
     answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(sent)}
     page, station = stage.open(scenes.quiet(), answers=answers)
@@ -83,7 +83,7 @@ def test_an_evacuation_that_all_have_acknowledged_stays_until_the_all_clear(stag
 
 
 @pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
-def test_the_orders_of_a_closed_incident_stay_in_it(stage: Stage, order: str) -> None:
+def test_orders_of_a_closed_incident_are_not_shown(stage: Stage, order: str) -> None:
     of_last = [
         scenes.order(kind, kind, ACKNOWLEDGED, is_open=False, incident_id="the last one")
         for kind in ("evacuate", "par_request", "text")
@@ -92,7 +92,7 @@ def test_the_orders_of_a_closed_incident_stay_in_it(stage: Stage, order: str) ->
     assert captions(page, order) == []
 
 
-def test_the_signal_of_a_place_is_shown_until_it_is_stopped(stage: Stage) -> None:
+def test_locate_signal_is_shown_until_it_is_stopped(stage: Stage) -> None:
     received = scenes.order("c1", "locate", {"FF-01": "received"})
     answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(received)}
     page, station = stage.open(with_orders(), answers=answers)
@@ -116,7 +116,7 @@ def test_the_signal_of_a_place_is_shown_until_it_is_stopped(stage: Stage) -> Non
     expect(locate).to_be_visible()
 
 
-def test_a_signal_of_the_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:
+def test_signal_of_a_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:
     page, _ = stage.open(with_orders(scenes.order("c1", "evacuate", {"FF-01": "notified"})))
     card = page.locator(".card", has_text="Astrid Lindqvist")
     expect(card.locator(".card-commands")).to_contain_text("signalled by the unit")
@@ -128,9 +128,7 @@ def test_a_signal_of_the_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
-def test_before_an_order_is_sent_it_names_whom_only_the_radio_reaches(
-    stage: Stage, order: str
-) -> None:
+def test_order_names_the_members_reachable_by_radio_only(stage: Stage, order: str) -> None:
     page, _ = stage.open(scenes.without_outputs())
     dialog = command(page, order)
     reported = dialog.locator(".not-notifiable")
@@ -145,7 +143,7 @@ def test_before_an_order_is_sent_it_names_whom_only_the_radio_reaches(
     expect(reported).to_have_text("")
 
 
-def test_a_card_shows_that_its_wearer_cannot_be_notified(stage: Stage) -> None:
+def test_card_shows_a_wearer_who_cannot_be_notified(stage: Stage) -> None:
     """Before anything is sent, and a locate order says so before it goes."""
     page, station = stage.open(scenes.without_outputs())
     shown = page.locator(".card", has_text="cannot be notified").locator(".name")
@@ -160,7 +158,7 @@ def test_a_card_shows_that_its_wearer_cannot_be_notified(stage: Stage) -> None:
     station.expect_changes()
 
 
-def test_who_cannot_be_notified_is_not_reached_until_the_answer_by_radio(stage: Stage) -> None:
+def test_wearer_without_notifier_is_unreached_until_the_answer_by_radio(stage: Stage) -> None:
     states = {"FF-01": "received", "FF-02": "notified", "FF-03": "sent"}
     cannot = {"FF-01", "FF-03"}
     shown = with_orders(
@@ -186,7 +184,7 @@ def test_who_cannot_be_notified_is_not_reached_until_the_answer_by_radio(stage: 
     expect(row).not_to_contain_text("cannot be notified")
 
 
-def test_an_incident_is_closed_over_person_only_by_name(stage: Stage) -> None:
+def test_closing_an_incident_names_members_inside(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name="Close this incident").click()
@@ -207,7 +205,7 @@ def test_an_incident_is_closed_over_person_only_by_name(stage: Stage) -> None:
     assert sent["despite_unit_ids"][:2] == ["FF-01", "FF-02"]
 
 
-def test_an_incident_in_which_all_is_over_asks_as_before(stage: Stage) -> None:
+def test_closing_a_finished_incident_asks_the_usual_question(stage: Stage) -> None:
     shown = scenes.quiet()
     out = tuple(msgspec.structs.replace(one, inside_since_ms=None) for one in shown.units)
     page, _ = stage.open(msgspec.structs.replace(shown, units=out))

@@ -9,7 +9,7 @@ from tests.e2e.console_page import press
 from tests.e2e.stage import Stage
 
 
-def test_a_notice_of_an_order_that_was_carried_out_says_so(stage: Stage) -> None:
+def test_notice_reports_that_the_order_was_carried_out(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     page.route("**/api/v1/alarms/*/acknowledge", lambda route: route.abort())
     done = {"action": "AcknowledgeAlarm", "t_ms": scenes.NOW_MS}

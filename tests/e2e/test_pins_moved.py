@@ -37,7 +37,7 @@ def moved(page: Page, panel: Locator) -> dict[str, Any]:
     return dict(asked.value.post_data_json or {})
 
 
-def test_a_form_says_only_what_stands_in_it(stage: Stage) -> None:
+def test_form_sends_only_its_fields(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), pins=(PIN,)))
     panel = pin_panel(page)
     panel.get_by_label("Note").fill("B")
@@ -50,7 +50,7 @@ def test_a_form_says_only_what_stands_in_it(stage: Stage) -> None:
     assert moved(page, panel) == now | {"note": "A"}, "it is now, and not when it was before"
 
 
-def test_a_beacon_is_found_and_changed_without_a_pointer(stage: Stage) -> None:
+def test_beacon_is_edited_by_keyboard(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), beacons=(BEACON,)))
     page.get_by_role("button", name="Pins 0, beacons 1").press("Enter")
     page.get_by_role("button", name="Beacon Door 3").press("Enter")
@@ -62,7 +62,7 @@ def test_a_beacon_is_found_and_changed_without_a_pointer(stage: Stage) -> None:
     assert asked.value.post_data_json == {"label": "Door 4", "reach_m": 5.0, **place}
 
 
-def test_who_moves_the_plan_moves_no_pin_along(stage: Stage) -> None:
+def test_panning_the_plan_moves_no_pin(stage: Stage) -> None:
     """Only one that was chosen is drawn to another place, and what was said of it stays."""
     at = scenes.position(0)
     pin = msgspec.structs.replace(PIN, north_m=at.north_m, east_m=at.east_m)

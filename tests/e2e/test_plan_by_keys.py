@@ -14,9 +14,7 @@ TO_PLAN = "To this person on the plan"
 
 
 @pytest.mark.parametrize("screen", ["laptop", "phone"])
-def test_two_keys_lead_from_a_person_in_the_list_to_the_same_on_the_plan(
-    stage: Stage, screen: str
-) -> None:
+def test_two_keys_lead_from_a_member_in_the_list_to_the_plan(stage: Stage, screen: str) -> None:
     """The plan stands behind the cards of all others."""
     page, _ = stage.open(scenes.bad_minute(), screen)
     head = page.locator(".card").nth(2).get_by_role("button").first
@@ -33,14 +31,14 @@ def test_two_keys_lead_from_a_person_in_the_list_to_the_same_on_the_plan(
     expect(head).to_be_in_viewport()
 
 
-def test_who_may_only_look_goes_there_too_and_nobody_else_meets_the_button(stage: Stage) -> None:
+def test_chosen_card_of_a_replay_offers_the_plan_by_keyboard(stage: Stage) -> None:
     page, _ = stage.open(scenes.past())
     expect(page.get_by_role("button", name=TO_PLAN)).to_have_count(0)
     page.locator(".card").first.get_by_role("button").first.press("Enter")
     expect(page.get_by_role("button", name=TO_PLAN)).to_have_count(1)
 
 
-def test_escape_on_the_plan_puts_down_a_tool_first(stage: Stage) -> None:
+def test_escape_on_the_plan_ends_a_tool_first(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     page.locator(".card").first.get_by_role("button").first.press("Enter")
     page.get_by_role("button", name="Beacon", exact=True).press("Enter")
@@ -58,9 +56,7 @@ def open_site(page: Page, screen: str) -> None:
 
 
 @pytest.mark.parametrize(("screen", "opener"), [("laptop", "Site"), ("phone", "Menu")])
-def test_after_a_place_on_the_earth_keys_go_on_where_the_dialog_was_opened(
-    stage: Stage, screen: str, opener: str
-) -> None:
+def test_focus_returns_after_georeferencing(stage: Stage, screen: str, opener: str) -> None:
     page, _ = stage.open(scenes.quiet(), screen)
     open_site(page, screen)
     page.get_by_role("dialog").get_by_role("button", name="Align by two points").press("Enter")
@@ -71,7 +67,7 @@ def test_after_a_place_on_the_earth_keys_go_on_where_the_dialog_was_opened(
     expect(page.get_by_role("button", name=opener, exact=True)).to_be_focused()
 
 
-def test_a_point_that_was_clicked_is_stated_in_words(stage: Stage) -> None:
+def test_clicked_point_is_announced(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), plan=None))
     open_site(page, "laptop")
     page.get_by_role("dialog").get_by_role("button", name="Align by two points").press("Enter")

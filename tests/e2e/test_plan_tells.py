@@ -16,7 +16,7 @@ from tests.e2e.stage import Stage
 
 @pytest.mark.parametrize("screen", ["laptop", "tablet", "phone"])
 @pytest.mark.parametrize("scene", [scenes.at_the_edges, scenes.pins_at_the_edges])
-def test_a_name_at_the_edge_of_the_plan_is_whole(
+def test_name_at_the_edge_of_the_plan_is_complete(
     stage: Stage, scene: Callable[[], Snapshot], screen: str
 ) -> None:
     page, _ = stage.open(scene(), screen)
@@ -27,14 +27,14 @@ def test_a_name_at_the_edge_of_the_plan_is_whole(
     assert edges == {"left": 0, "right": 0, "top": 0, "bottom": 0}
 
 
-def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> None:
+def test_floor_shows_its_number_of_endangered_members(stage: Stage) -> None:
     page, _ = stage.open(scenes.crowd())
     floors = page.get_by_role("group", name="Floor shown").get_by_role("button")
     expect(floors.nth(0)).to_have_accessible_name("Floor 1, 1 in danger, of 20 people")
     expect(floors.nth(1)).to_have_accessible_name("Floor G, 20 people")
 
 
-def test_what_is_looked_at_by_keys_stays_until_person_asks_for_all(stage: Stage) -> None:
+def test_zoom_by_keyboard_is_kept_until_reset(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     scale = page.locator(".ol-scale-line-inner")
     expect(scale).to_have_text("10 m")
@@ -50,7 +50,7 @@ def test_what_is_looked_at_by_keys_stays_until_person_asks_for_all(stage: Stage)
     expect(scale).to_have_text("10 m")
 
 
-def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> None:
+def test_unavailable_plan_tool_takes_no_clicks(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     page.get_by_role("button", name="Pins 2").click()
     page.get_by_role("button", name="Astrid Lindqvist here").click()
@@ -60,7 +60,7 @@ def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> N
     expect(page.locator(".map.placing")).to_have_count(0)
 
 
-def test_the_pins_that_contradict_stand_on_top_and_each_says_its_floor(stage: Stage) -> None:
+def test_conflicting_pins_are_first_and_show_their_floors(stage: Stage) -> None:
     """Two of the same minute are told apart."""
     pins = tuple(
         msgspec.structs.replace(
@@ -80,7 +80,7 @@ def test_the_pins_that_contradict_stand_on_top_and_each_says_its_floor(stage: St
     expect(page.get_by_role("form", name="Pin: ")).to_contain_text("3 m above. Set by")
 
 
-def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
+def test_selected_pin_stays_on_its_floor(stage: Stage) -> None:
     """Whichever floor is shown, and where nobody is on its own."""
     pins = tuple(
         msgspec.structs.replace(scenes.pin(str(index), index, "used", 3.0, ""), floor=floor)
@@ -93,7 +93,7 @@ def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
         expect(page.get_by_role("combobox", name="Floor")).to_have_value(floor)
 
 
-def test_a_mark_of_another_floor_is_hollow(stage: Stage) -> None:
+def test_marks_of_other_floors_are_hollow(stage: Stage) -> None:
     """Drawn as those on the floor shown, casualties were looked for on the wrong one."""
     page, _ = stage.open(scenes.bad_minute())
     floors = page.get_by_role("group", name="Floor shown")

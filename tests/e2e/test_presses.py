@@ -47,7 +47,7 @@ def received(one: UnitView) -> UnitView:
     return msgspec.structs.replace(one, duty=msgspec.structs.replace(one.duty, due_ms=due_ms))
 
 
-def test_two_presses_tick_off_one_person(stage: Stage) -> None:
+def test_double_press_confirms_one_member(stage: Stage) -> None:
     """Who was ticked off goes down, and the next one comes to that place."""
     first, second, third = (scenes.person(index).name for index in (0, 10, 5))
     crew = [scenes.unit(index) for index in (0, 5, 10)]
@@ -76,7 +76,7 @@ def test_two_presses_tick_off_one_person(stage: Stage) -> None:
 @pytest.mark.parametrize(
     ("order", "sends"), [("Evacuate", "Evacuate now"), ("PAR", "Send"), ("Message", "Send")]
 )
-def test_two_presses_order_once(stage: Stage, order: str, sends: str) -> None:
+def test_double_press_sends_one_order(stage: Stage, order: str, sends: str) -> None:
     """Everybody would have to answer twice."""
     page, station = stage.open(scenes.quiet())
     commands = page.get_by_role("group", name="Commands")
@@ -95,7 +95,7 @@ def test_two_presses_order_once(stage: Stage, order: str, sends: str) -> None:
 
 
 @pytest.mark.parametrize("order", ["Message", "Evacuate"])
-def test_what_is_sent_next_is_for_the_same_and_not_for_everyone(stage: Stage, order: str) -> None:
+def test_next_order_keeps_its_target(stage: Stage, order: str) -> None:
     """Who presses again because nobody answers must not call all others out."""
     sent = {"POST /commands": {"command_id": "c9"}}
     page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, **sent})
@@ -114,7 +114,7 @@ def test_what_is_sent_next_is_for_the_same_and_not_for_everyone(stage: Stage, or
         assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
 
 
-def test_an_order_to_a_crew_that_is_gone_is_not_one_to_everyone(stage: Stage) -> None:
+def test_order_to_a_removed_crew_is_not_sent_to_everyone(stage: Stage) -> None:
     quiet = scenes.quiet()
     page, station = stage.open(quiet)
     page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()
@@ -129,7 +129,7 @@ def test_an_order_to_a_crew_that_is_gone_is_not_one_to_everyone(stage: Stage) ->
     assert (asked.value.post_data_json or {})["target"] == {"crew": "Engine 1"}
 
 
-def test_who_was_met_is_no_other_once_nobody_wears_that_unit(stage: Stage) -> None:
+def test_met_unit_stays_chosen_after_its_unassignment(stage: Stage) -> None:
     quiet = scenes.quiet()
     page, station = stage.open(quiet)
     page.locator("[data-unit='FF-01']").get_by_role("button").first.click()
@@ -143,7 +143,7 @@ def test_who_was_met_is_no_other_once_nobody_wears_that_unit(stage: Stage) -> No
     assert (asked.value.post_data_json or {})["other_unit_id"] == "FF-03"
 
 
-def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
+def test_double_press_sets_one_pin_and_adds_one_person(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     people = menu(page, "People")
     people.get_by_label("Name", exact=True).fill("Bo Stein")
@@ -162,7 +162,7 @@ def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
     station.expect_changes("/people", "/pins")
 
 
-def test_two_presses_acknowledge_the_alarms_of_one_member(stage: Stage) -> None:
+def test_double_press_acknowledges_the_alarms_of_one_member(stage: Stage) -> None:
     """What is over goes away, and the next member's alarm would never be seen."""
     page, station = stage.open(scenes.bad_minute())
     fall, still, heat, _ = scenes.bad_minute().alarms
@@ -182,7 +182,7 @@ def test_two_presses_acknowledge_the_alarms_of_one_member(stage: Stage) -> None:
     station.expect_changes(*first, f"/alarms/{quote(heat.alarm_id)}/acknowledge")
 
 
-def test_who_acknowledges_by_key_goes_on_from_that_alarm(stage: Stage) -> None:
+def test_focus_stays_at_the_alarm_acknowledged_by_keyboard(stage: Stage) -> None:
     """The button is gone; without the focus the way begins at the top of the page again."""
     page, station = stage.open(scenes.bad_minute())
     fall = scenes.bad_minute().alarms[0]
@@ -191,7 +191,7 @@ def test_who_acknowledges_by_key_goes_on_from_that_alarm(stage: Stage) -> None:
     expect(page.get_by_role("button", name=f"Resolve: {fall.text}")).to_be_focused()
 
 
-def test_everybody_is_ticked_off_once(stage: Stage) -> None:
+def test_confirmation_of_everyone_is_sent_once(stage: Stage) -> None:
     """A question that was answered does not stand there for the next press."""
     page, station = stage.open(scenes.quiet())
     page.locator(".par-clock").click()
@@ -204,7 +204,7 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     station.expect_changes("/check-ins")
 
 
-def test_whom_to_choose_from_is_listed_where_person_chooses(stage: Stage) -> None:
+def test_options_of_an_assignment_are_listed_on_demand(stage: Stage) -> None:
     """Each unit with each person would be a quarter of a million entries of 500."""
     page, _ = stage.open(scenes.quiet())
     worn = menu(page, "Units").get_by_role("combobox", name="Assign ")
@@ -214,7 +214,7 @@ def test_whom_to_choose_from_is_listed_where_person_chooses(stage: Stage) -> Non
     expect(worn.first.locator("option[value=p3]")).to_be_attached()
 
 
-def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
+def test_arrow_keys_alone_assign_no_unit(stage: Stage) -> None:
     """Nor is that person taken from another; by keys it counts with Enter, or on leaving."""
     quiet = scenes.quiet()
     page, station = stage.open(quiet)
@@ -240,7 +240,7 @@ def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
     assert asked.value.post_data_json == {"unit_id": "FF-01", "person_id": "p3"}
 
 
-def test_who_has_keys_only_goes_on_in_what_was_opened_and_back(stage: Stage) -> None:
+def test_focus_moves_into_the_opened_panel_and_back(stage: Stage) -> None:
     """The panel stands behind forty cards; back at the top everything begins again."""
     page, _ = stage.open(scenes.crowd())
     page.locator(".card").first.get_by_role("button").first.press("Enter")
@@ -262,7 +262,7 @@ def test_who_has_keys_only_goes_on_in_what_was_opened_and_back(stage: Stage) -> 
     expect(pins).to_be_focused()
 
 
-def test_a_list_that_comes_in_moves_nothing_that_is_pressed_meanwhile(stage: Stage) -> None:
+def test_loaded_list_moves_no_control(stage: Stage) -> None:
     """A dialog grows downwards; where it grew to both sides, the press was lost."""
     dispatched = msgspec.structs.replace(scenes.quiet(), dispatches=(scenes.dispatch("2026/7"),))
     page, _ = stage.open(dispatched)

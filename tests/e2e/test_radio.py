@@ -103,7 +103,7 @@ def player(page: Page) -> Locator:
     return page.get_by_role("group", name="Radio")
 
 
-def test_the_radio_is_in_step_with_the_replay(stage: Stage) -> None:
+def test_radio_is_synchronised_with_the_replay(stage: Stage) -> None:
     page, station = open_page(stage, scenes.quiet())
     begin_replay(page)
     expect(player(page).locator("audio")).to_have_count(0)  # off until it is wanted
@@ -128,7 +128,7 @@ def test_a_replay_without_radio_has_no_player(stage: Stage) -> None:
     expect(player(page)).to_have_count(0)
 
 
-def test_the_radio_of_an_alarm_plays_from_ten_seconds_before(stage: Stage) -> None:
+def test_radio_of_an_alarm_starts_ten_seconds_before_it(stage: Stage) -> None:
     raised_ms = START_MS + 60_000
     traces = ("motionless_s", "temperature_degc", "battery_level", "height_m", "stated_error_m")
     explanation: dict[str, object] = {

@@ -38,7 +38,7 @@ def begin_replay(page: Page) -> Locator:
     return banner
 
 
-def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
+def test_live_banner_on_a_phone_keeps_the_name_of_the_replay(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), "phone")
     page.get_by_role("button", name="Menu").click()
     banner = begin_replay(page)
@@ -50,7 +50,7 @@ def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
     assert box["height"] < 50, "two lines, and no column of words"
 
 
-def test_what_cannot_wait_is_stated_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:
+def test_urgent_live_alarm_is_shown_over_a_replay_and_leads_to_it(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     banner = begin_replay(page)
     dialog = menu(page, "Account")
@@ -65,7 +65,7 @@ def test_what_cannot_wait_is_stated_over_a_replay_as_live_and_leads_there(stage:
     expect(page.locator(".card.chosen")).to_contain_text("Mayday")
 
 
-def test_a_station_that_replays_says_no_alarm_of_the_past_as_one_that_cannot_wait(
+def test_replay_station_shows_no_past_alarm_as_live(
     stage: Stage,
 ) -> None:
     page, _ = stage.open(scenes.past())
@@ -73,7 +73,7 @@ def test_a_station_that_replays_says_no_alarm_of_the_past_as_one_that_cannot_wai
     expect(menu(page, "Account").get_by_role("button", name="may have fallen")).to_have_count(0)
 
 
-def test_a_replay_does_not_say_that_the_station_is_well(stage: Stage) -> None:
+def test_replay_does_not_show_the_stations_health(stage: Stage) -> None:
     """What was measured of the machine is no part of the past; what is wrong now is said beside."""
     health = msgspec.structs.replace(scenes.HEALTH, problems=("only 700 MB are free", "b"))
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), health=health))
@@ -87,7 +87,7 @@ def test_a_replay_does_not_say_that_the_station_is_well(stage: Stage) -> None:
     expect(light).to_be_visible()
 
 
-def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
+def test_replay_seeks_from_alarm_to_alarm(stage: Stage) -> None:
     page, _ = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")
     with page.expect_request(re.compile("/replays/r1$")) as sent:
@@ -102,7 +102,7 @@ def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
     expect(page.get_by_role("button", name="Evacuate")).to_have_count(0)
 
 
-def test_a_jump_in_the_past_begins_the_list_anew(stage: Stage) -> None:
+def test_seek_sorts_the_list_anew(stage: Stage) -> None:
     """Live, whoever gets better keeps the place for a while."""
     page, station = stage.open(scenes.past())
     expect(page.locator(".card").first).to_contain_text("Jonas Bergman")
@@ -113,9 +113,7 @@ def test_a_jump_in_the_past_begins_the_list_anew(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("screen", SCREENS)
-def test_what_is_not_as_it_was_reaches_who_does_not_see_the_terminal(
-    stage: Stage, screen: str
-) -> None:
+def test_differences_of_a_replay_are_shown_in_the_console(stage: Stage, screen: str) -> None:
     page, _ = stage.open(over_a_day(MISSING, TORN), screen)
     reported = page.get_by_role("region", name="Replay").get_by_role("button", name="Not all is as")
     expect(reported).to_have_text("Not all is as it was: 2")
@@ -126,7 +124,7 @@ def test_what_is_not_as_it_was_reaches_who_does_not_see_the_terminal(
     assert flaws(page) == []
 
 
-def test_a_replay_of_a_whole_log_warns_of_nothing(stage: Stage) -> None:
+def test_replay_of_a_complete_log_shows_no_warning(stage: Stage) -> None:
     page, _ = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")
     expect(bar).to_contain_text("Recorded, not live")
@@ -134,9 +132,7 @@ def test_a_replay_of_a_whole_log_warns_of_nothing(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("screen", ["laptop", "tablet upright", "phone on its side"])
-def test_a_gap_of_the_record_is_named_and_nothing_in_it_looks_current(
-    stage: Stage, screen: str
-) -> None:
+def test_gap_of_the_record_is_named_and_its_data_shown_as_old(stage: Stage, screen: str) -> None:
     shown = scenes.past()
     assert shown.replay is not None
     from_ms = shown.replay.at_ms - scenes.MINUTE_MS
@@ -154,7 +150,7 @@ def test_a_gap_of_the_record_is_named_and_nothing_in_it_looks_current(
     expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
 
 
-def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_are(
+def test_times_of_another_day_show_date_and_time_zone(
     stage: Stage,
 ) -> None:
     page, _ = stage.open(over_a_day(), timezone="Asia/Kolkata")
@@ -171,7 +167,7 @@ def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_a
     )
 
 
-def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_it(
+def test_second_replay_at_a_replay_station_shows_no_live_banner(
     stage: Stage,
 ) -> None:
     """What is beside it is the past too, and nobody gets out of that without a banner."""

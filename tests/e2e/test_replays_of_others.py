@@ -12,7 +12,7 @@ from tests.e2e.stage import ANSWERS, Stage
 OPEN = {"/replays": [scenes.replay("r1", "mia"), scenes.replay("r2", "chief")]}
 
 
-def test_a_commander_sees_whose_replays_are_open_and_ends_one(stage: Stage) -> None:
+def test_commander_lists_open_replays_with_owners_and_ends_one(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet(), answers={**ANSWERS, **OPEN})
     table = menu(page, "Incidents").get_by_role("table", name="Replays that are open elsewhere")
     row = table.get_by_role("row", name="mia")
@@ -23,7 +23,7 @@ def test_a_commander_sees_whose_replays_are_open_and_ends_one(stage: Stage) -> N
     station.expect_changes("/replays/r1")
 
 
-def test_a_viewer_is_offered_to_end_only_the_own(stage: Stage) -> None:
+def test_viewer_can_end_only_the_own_replay(stage: Stage) -> None:
     viewer = {"/me": {"username": "chief", "role": "viewer"}}
     page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, **OPEN, **viewer})
     table = menu(page, "Incidents").get_by_role("table", name="Replays that are open elsewhere")

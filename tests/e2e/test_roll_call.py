@@ -12,7 +12,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 
-def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
+def test_confirmation_of_all_excludes_casualties(stage: Stage) -> None:
     """One press for a crew or for all is for those who answered."""
     page, station = stage.open(scenes.bad_minute())
     page.locator(".par-clock").click()
@@ -27,7 +27,7 @@ def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
     station.expect_changes()
 
 
-def test_a_crew_with_person_down_is_ticked_off_on_a_second_word(stage: Stage) -> None:
+def test_confirmation_of_a_crew_with_a_casualty_needs_a_second_press(stage: Stage) -> None:
     shown = scenes.bad_minute(7)  # two of each crew
     page, station = stage.open(shown)
     page.locator(".par-clock").click()

@@ -60,7 +60,7 @@ def choose_csv(dialog: Locator, content: bytes) -> Locator:
     return dialog.get_by_role("region", name="People of the file")
 
 
-def test_crews_of_a_file_are_looked_at_and_then_added(
+def test_crews_of_a_file_are_previewed_and_added(
     page: Page, tmp_path: Path, complaints: list[str]
 ) -> None:
     presses = Presses(page)
@@ -108,14 +108,16 @@ def board(page: Page) -> Locator:
     return dialog
 
 
-def test_people_are_drawn_to_another_crew(board: Locator) -> None:
+def test_people_are_dragged_to_another_crew(board: Locator) -> None:
     bo = board.get_by_role("button", name="Bo Li")
     bo.drag_to(crew(board, "Engine 1"))
     expect(crew(board, "Engine 1").get_by_role("button", name="Bo Li")).to_be_visible()
     expect(crew(board, "Engine 2").get_by_role("listitem")).to_have_count(1)
 
 
-def test_people_are_moved_without_drawing(board: Locator, page: Page, tmp_path: Path) -> None:
+def test_people_are_moved_to_another_crew_without_dragging(
+    board: Locator, page: Page, tmp_path: Path
+) -> None:
     """By keys, and on a screen that is touched."""
     board.get_by_label("New crew").fill("Ladder 1")
     board.get_by_role("button", name="Add crew").click()
@@ -129,7 +131,7 @@ def test_people_are_moved_without_drawing(board: Locator, page: Page, tmp_path: 
     expect(crew(board, "Engine 2")).to_have_count(0)
 
 
-def test_a_picture_dropped_on_a_person_is_the_photo(
+def test_dropped_picture_becomes_the_photo_of_the_person(
     board: Locator, page: Page, tmp_path: Path
 ) -> None:
     written = io.BytesIO()
@@ -148,7 +150,7 @@ def test_a_picture_dropped_on_a_person_is_the_photo(
     close(board)
 
 
-def test_a_unit_is_enrolled_in_three_presses_and_links_with_the_file(
+def test_unit_enrolled_in_three_presses_links_with_its_file(
     page: Page, station: StationProcess, tmp_path: Path, complaints: list[str]
 ) -> None:
     presses = Presses(page)
@@ -325,7 +327,7 @@ def test_ordinary_geojson_and_dxf_become_plans(page: Page, complaints: list[str]
     assert wall_line == [[0, 0], [10, 0]]
 
 
-def test_a_model_of_two_storeys_becomes_floors(
+def test_storeys_of_a_model_become_floors(
     page: Page, tmp_path: Path, complaints: list[str]
 ) -> None:
     house = house_of_two_storeys("IFC4", 0.001)
@@ -354,9 +356,7 @@ def test_a_model_of_two_storeys_becomes_floors(
     close(site)
 
 
-def test_the_place_that_a_model_suggests_is_left_unless_it_is_chosen(
-    page: Page, complaints: list[str]
-) -> None:
+def test_suggested_place_of_a_model_is_optional(page: Page, complaints: list[str]) -> None:
     house = house_of_two_storeys()
     house.site.RefLatitude, house.site.RefLongitude = (42, 21, 31), (-71, -3, -24)
     site = menu(page, "Site")

@@ -69,7 +69,7 @@ def test_one_incident_is_shown_at_a_time_and_its_orders_name_it(stage: Stage) ->
     expect(apart.get_by_role("heading")).to_contain_text("Unassigned 3")
 
 
-def test_an_alarm_of_another_incident_bears_its_name_and_leads_there(stage: Stage) -> None:
+def test_alarm_of_another_incident_shows_its_name_and_leads_to_it(stage: Stage) -> None:
     page, _ = stage.open(scenes.two_incidents())
     what = strip(page).get_by_role("listitem").locator(".what")
     expect(what).to_have_text(f"{DOWN} may have fallen")
@@ -89,7 +89,7 @@ def test_an_alarm_of_another_incident_bears_its_name_and_leads_there(stage: Stag
     expect(switch(page)).to_have_value(HARBOUR.incident_id)
 
 
-def test_who_is_in_no_incident_is_shown_apart_and_assigned(stage: Stage) -> None:
+def test_members_without_incident_are_listed_separately_and_assigned(stage: Stage) -> None:
     page, station = stage.open(scenes.two_incidents())
     apart = page.get_by_role("region", name="Unassigned")
     expect(apart.get_by_role("heading")).to_contain_text("Unassigned 1")
@@ -111,7 +111,7 @@ def test_who_is_in_no_incident_is_shown_apart_and_assigned(stage: Stage) -> None
     assert barriers(page) == []
 
 
-def test_another_incident_is_opened_beside_the_one_that_runs(stage: Stage) -> None:
+def test_second_incident_is_opened_beside_the_first(stage: Stage) -> None:
     opened = {"incident_id": HARBOUR.incident_id, "name": HARBOUR.name}
     page, station = stage.open(scenes.quiet(), answers={**ANSWERS, "POST /incidents": opened})
     expect(switch(page)).to_have_count(0)
@@ -131,9 +131,7 @@ def test_another_incident_is_opened_beside_the_one_that_runs(stage: Stage) -> No
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_the_switch_fits_on_every_screen_and_everybody_can_use_it(
-    stage: Stage, scheme: str
-) -> None:
+def test_incident_switch_fits_every_screen_and_is_accessible(stage: Stage, scheme: str) -> None:
     page, _ = stage.open(scenes.two_incidents())
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     switch(page).select_option(FLATS.incident_id)

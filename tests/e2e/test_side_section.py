@@ -60,7 +60,7 @@ def test_a_hundred_people_are_legible_everywhere(
     assert barriers(page) == []
 
 
-def test_everybody_is_on_their_floor_in_words(stage: Stage) -> None:
+def test_section_describes_the_floor_of_every_member(stage: Stage) -> None:
     page, _ = stage.open(tower(12), kept=SHOWN)
     expect(on_floor(page, "floor 3").filter(has_text="!JB")).to_have_count(1)
     expect(on_floor(page, "floor unknown")).to_contain_text("floor unknown, perhaps floor 2")
@@ -73,7 +73,7 @@ def test_everybody_is_on_their_floor_in_words(stage: Stage) -> None:
     expect(section(page).locator(".section-ends")).to_contain_text(re.compile("south.*north"))
 
 
-def test_a_press_or_the_keyboard_chooses_as_on_the_plan(stage: Stage) -> None:
+def test_press_or_keyboard_chooses_a_member(stage: Stage) -> None:
     page, _ = stage.open(tower(100))
     expect(page.locator(".map")).to_be_visible()
     page.keyboard.press("s")
@@ -121,7 +121,7 @@ def changes_while(page: Page, station: PlayedStation) -> int:
     return count
 
 
-def test_it_is_drawn_anew_only_where_something_has_changed(stage: Stage) -> None:
+def test_section_is_redrawn_only_after_changes(stage: Stage) -> None:
     still = tower(12)
     units = tuple(_from_the_future(one) for one in still.units)
     page, station = stage.open(msgspec.structs.replace(still, units=units), kept=SHOWN)
@@ -133,7 +133,7 @@ def test_it_is_drawn_anew_only_where_something_has_changed(stage: Stage) -> None
     expect(astrid).to_contain_text(re.compile(r"floor 1, height 3\.2\sm"))
 
 
-def test_the_past_is_shown_from_its_side_too(stage: Stage) -> None:
+def test_section_is_shown_in_a_replay(stage: Stage) -> None:
     page, _ = stage.open(tower(12), kept=SHOWN)
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name="Replay").first.click()

@@ -14,7 +14,7 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 
-def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: Stage) -> None:
+def test_replacing_the_place_of_a_plan_needs_confirmation(stage: Stage) -> None:
     """Whoever satellites have placed moves by it: it says by how far, and of another place anew."""
     anchor = AnchorView(57.7, 11.97, 0.0, 0.0)
     page, station = stage.open(msgspec.structs.replace(scenes.quiet(), anchor=anchor))
@@ -42,7 +42,7 @@ def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: St
     station.expect_changes("/site/anchor")
 
 
-def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
+def test_first_place_of_a_plan_is_set_without_confirmation(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     site = menu(page, "Site")
     expect(site).to_contain_text("The location of the plan is not known")
@@ -53,7 +53,7 @@ def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
     station.expect_changes("/site/anchor")
 
 
-def test_a_plan_is_replaced_by_who_has_stated_so(stage: Stage, tmp_path: Path) -> None:
+def test_replacing_a_plan_needs_confirmation(stage: Stage, tmp_path: Path) -> None:
     page, station = stage.open(scenes.bad_minute())
     site = menu(page, "Site")
     file = site.get_by_label("New plan")

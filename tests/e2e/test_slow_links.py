@@ -16,7 +16,7 @@ def never(_: Route) -> None:
     """An answer that is still on its way."""
 
 
-def test_who_wears_a_unit_is_stated_before_the_list_of_people_is_there(stage: Stage) -> None:
+def test_wearer_is_shown_before_the_list_of_people_is_loaded(stage: Stage) -> None:
     """An empty field would say that nobody does."""
     page, _ = stage.open(scenes.quiet())
     page.route("**/api/v1/people", never)
@@ -26,7 +26,7 @@ def test_who_wears_a_unit_is_stated_before_the_list_of_people_is_there(stage: St
 
 
 @pytest.mark.parametrize("name", ["People", "Incidents", "Users", "Audit log"])
-def test_a_list_that_is_not_there_yet_does_not_look_empty(stage: Stage, name: str) -> None:
+def test_list_being_loaded_does_not_look_empty(stage: Stage, name: str) -> None:
     page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, "/users": USERS})
     for path in ("people", "incidents*", "users", "audit*"):
         page.route(f"**/api/v1/{path}", never)
@@ -43,7 +43,7 @@ def test_a_list_that_is_not_there_yet_does_not_look_empty(stage: Stage, name: st
     ("name", "path", "row"),
     [("People", "people", "Li Na"), ("Incidents", "incidents*", scenes.INCIDENT.name)],
 )
-def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
+def test_failed_list_is_loaded_once_the_station_returns(
     stage: Stage, name: str, path: str, row: str
 ) -> None:
     """It was started again while the dialog was open; whoever looks need not close it."""
@@ -57,7 +57,7 @@ def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
     expect(dialog.get_by_role("row", name=row).first).to_be_visible()
 
 
-def test_that_a_list_could_not_be_had_is_not_stated_of_a_station_that_is_back(stage: Stage) -> None:
+def test_failure_of_a_list_disappears_when_the_station_returns(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/people", lambda route: route.abort())
     dialog = menu(page, "People")
@@ -68,7 +68,7 @@ def test_that_a_list_could_not_be_had_is_not_stated_of_a_station_that_is_back(st
     expect(notice).to_have_count(0)
 
 
-def test_that_nobody_knows_whether_something_was_done_stays_stated(stage: Stage) -> None:
+def test_unknown_outcome_of_an_order_stays_shown(stage: Stage) -> None:
     """Who orders an evacuation and looks away must find out that it may not have gone out."""
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/commands", lambda route: route.abort())
@@ -83,7 +83,7 @@ def test_that_nobody_knows_whether_something_was_done_stays_stated(stage: Stage)
     expect(notice).to_be_visible()
 
 
-def test_who_cannot_log_in_for_want_of_an_answer_need_not_look_what_was_done(stage: Stage) -> None:
+def test_login_without_answer_reports_no_unknown_outcome(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     station.end_logins()
     page.route("**/api/v1/login", lambda route: route.abort())
@@ -93,7 +93,7 @@ def test_who_cannot_log_in_for_want_of_an_answer_need_not_look_what_was_done(sta
     expect(page.get_by_role("alert")).to_have_text("The base station cannot be reached.")
 
 
-def test_a_press_over_a_slow_link_is_seen_to_be_under_way(stage: Stage) -> None:
+def test_pending_press_is_indicated_on_a_slow_link(stage: Stage) -> None:
     """Else who orders an evacuation would think that the button was missed."""
     page, _ = stage.open(scenes.quiet())
     waiting: list[Route] = []

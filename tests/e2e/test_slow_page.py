@@ -12,7 +12,7 @@ from tests.rig.waiting import until
 PEOPLE, DELTAS = 200, 10
 
 
-def test_a_slow_page_confirms_what_it_has_shown_and_shows_the_newest(stage: Stage) -> None:
+def test_slow_page_confirms_shown_messages_and_shows_the_newest(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet(PEOPLE), "large")
     page.context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": 4})
     for number in range(DELTAS):

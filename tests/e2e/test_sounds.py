@@ -9,7 +9,7 @@ from tests.e2e import scenes
 from tests.e2e.stage import Stage
 
 
-def test_alarms_are_received_unless_switched_off(stage: Stage) -> None:
+def test_alarm_sounds_unless_sound_is_off(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     page.evaluate(
         """() => {
@@ -42,7 +42,7 @@ def test_alarms_are_received_unless_switched_off(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("key", [None, "Enter", "Space"])
-def test_the_button_that_says_no_sound_yet_switches_it_on(stage: Stage, key: str | None) -> None:
+def test_press_of_the_no_sound_button_enables_sound(stage: Stage, key: str | None) -> None:
     """It is the first press on the page, which alone lets the browser play."""
     page, _ = stage.open(scenes.quiet())
     button = page.get_by_role("button", name="No sound yet")
@@ -55,7 +55,7 @@ def test_the_button_that_says_no_sound_yet_switches_it_on(stage: Stage, key: str
     expect(page.get_by_role("button", name="Sound off")).to_be_visible()
 
 
-def test_sound_that_the_browser_keeps_silent_is_not_stated_to_be_on(stage: Stage) -> None:
+def test_sound_blocked_by_the_browser_is_not_shown_as_on(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet())
     page.evaluate(
         """() => {

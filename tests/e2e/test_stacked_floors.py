@@ -71,7 +71,7 @@ def test_a_hundred_people_are_legible_everywhere(
     assert barriers(page) == []
 
 
-def test_it_is_loaded_only_when_it_is_chosen(stage: Stage) -> None:
+def test_stacked_view_is_loaded_on_demand(stage: Stage) -> None:
     page, _ = stage.open(tower(12), kept={"muster-section": "on"})
     expect(page.get_by_role("region", name="Side section")).to_be_visible()
     loaded: list[str] = []
@@ -99,7 +99,7 @@ def test_it_is_loaded_only_when_it_is_chosen(stage: Stage) -> None:
     ],
     ids=["arrow left", "arrow up", "plus", "wheel", "heights"],
 )
-def test_marks_follow_when_it_is_turned(stage: Stage, turn: Callable[[Page], None]) -> None:
+def test_marks_follow_the_rotation(stage: Stage, turn: Callable[[Page], None]) -> None:
     page, _ = stage.open(tower(12), kept=SHOWN)
     expect(marks(page).first).to_be_visible()
     before = places(page)
@@ -109,7 +109,7 @@ def test_marks_follow_when_it_is_turned(stage: Stage, turn: Callable[[Page], Non
     wait_until("the marks have moved", lambda: places(page) != before)
 
 
-def test_a_press_chooses_as_on_the_plan(stage: Stage) -> None:
+def test_press_chooses_a_member(stage: Stage) -> None:
     page, _ = stage.open(tower(12), kept=SHOWN)
     mark = marks(page).filter(has_text="Jonas Bergman, in danger")
     mark.focus()
@@ -118,14 +118,14 @@ def test_a_press_chooses_as_on_the_plan(stage: Stage) -> None:
     expect(page.locator(f"[data-unit='{scenes.unit_id(1)}'].chosen").first).to_be_visible()
 
 
-def test_a_building_without_a_plan_has_the_floors_that_were_learnt(stage: Stage) -> None:
+def test_building_without_a_plan_shows_learnt_floors(stage: Stage) -> None:
     page, _ = stage.open(tower(12, with_plan=False), kept=SHOWN)
     floors = stack(page).locator(".stack-view > ul > li")
     expect(floors.filter(has_text="floor 3")).to_contain_text("Jonas Bergman, in danger")
     assert is_drawn(page)
 
 
-def test_a_browser_without_webgl_refers_to_the_side_section(stage: Stage) -> None:
+def test_browser_without_webgl_is_referred_to_the_side_section(stage: Stage) -> None:
     page, _ = stage.open(tower(12), kept={"muster-section": "on"})
     page.evaluate(NO_WEBGL)
     page.get_by_role("combobox", name="Shown").select_option("stacked in 3D")

@@ -83,7 +83,7 @@ def paused_replay(page: Page) -> Locator:
     return bar
 
 
-def test_a_timeline_goes_with_the_replay_both_ways(page: Page) -> None:
+def test_timeline_and_replay_follow_each_other(page: Page) -> None:
     bar = paused_replay(page)
 
     dialog = open_timeline(page, "FF-03")
@@ -133,7 +133,7 @@ def test_a_timeline_goes_with_the_replay_both_ways(page: Page) -> None:
     close(gap)
 
 
-def test_an_alarm_shows_the_threshold_that_was_crossed_and_the_values_about_it(page: Page) -> None:
+def test_alarm_shows_its_threshold_and_the_values_around_it(page: Page) -> None:
     paused_replay(page).get_by_label("Time of the incident").press("End")
     card = page.locator("[data-unit='FF-01']")
     expect(card).to_contain_text("No motion")

@@ -24,9 +24,7 @@ def log_in(page: Page, station: Station) -> None:
     page.get_by_role("button", name="Log in").click()
 
 
-def test_the_console_goes_to_the_station_that_has_taken_over(
-    chromium: Browser, tmp_path: Path
-) -> None:
+def test_console_follows_to_the_station_that_took_over(chromium: Browser, tmp_path: Path) -> None:
     with ExitStack() as closing:
         two = TwoStations(tmp_path, (Place(), Place()), closing, launch_loaded)
         two.start()

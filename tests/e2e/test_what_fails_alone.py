@@ -28,7 +28,7 @@ def with_unit(shown: Snapshot, index: int, **broken: object) -> Snapshot:
 @pytest.mark.parametrize(
     "broken", [{"trust": None}, {"status": 5}, {"alarms": None}, {"person": {"name": {"en": "J"}}}]
 )
-def test_a_card_that_fails_is_named_and_the_others_are_shown(
+def test_failing_card_is_reported_and_the_others_are_shown(
     stage: Stage, broken: dict[str, object]
 ) -> None:
     shown = with_unit(scenes.quiet(4), 1, **broken)
@@ -51,7 +51,7 @@ ROOM = {"type": "Feature", "properties": {"kind": "room", "floor": 0, "name": "s
 @pytest.mark.parametrize(
     "geometry", [None, 5, {"type": "Polygon"}, {"type": "Circle", "coordinates": [0, 0]}]
 )
-def test_a_feature_of_the_plan_that_fails_takes_no_card_and_no_wall(
+def test_failing_feature_of_the_plan_hides_no_card_and_no_wall(
     stage: Stage, geometry: object
 ) -> None:
     plan = json.loads(scenes.PLAN.read_bytes())
@@ -65,7 +65,7 @@ def test_a_feature_of_the_plan_that_fails_takes_no_card_and_no_wall(
     expect(page.locator(".map canvas").first).to_be_visible()
 
 
-def test_a_panel_that_fails_takes_no_other(stage: Stage) -> None:
+def test_failing_panel_hides_no_other(stage: Stage) -> None:
     shown = msgspec.structs.replace(scenes.bad_minute(4), beacons=None, pins=5)
     page, _ = stage.open(shown)
     expect(page.locator(".cannot-show, .faults").first).to_contain_text("cannot be shown:")
@@ -73,7 +73,7 @@ def test_a_panel_that_fails_takes_no_other(stage: Stage) -> None:
     expect(page.get_by_role("region", name="Open alarms").locator("li").first).to_be_visible()
 
 
-def test_an_alarm_that_fails_takes_no_other(stage: Stage) -> None:
+def test_failing_alarm_hides_no_other(stage: Stage) -> None:
     shown = scenes.bad_minute(4)
     broken = msgspec.structs.replace(shown.alarms[0], text={"en": "fallen"})
     page, _ = stage.open(msgspec.structs.replace(shown, alarms=(broken, *shown.alarms[1:])))
@@ -82,7 +82,7 @@ def test_an_alarm_that_fails_takes_no_other(stage: Stage) -> None:
     expect(strip.locator(".alarm", has_text="Mira Okafor")).to_be_visible()
 
 
-def test_a_dialog_that_fails_closes_and_says_so(stage: Stage) -> None:
+def test_failing_dialog_closes_with_a_message(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(3), answers={**ANSWERS, "/people": [None]})
     page.get_by_role("navigation").get_by_role("button", name="People").click()
     expect(page.locator(".faults")).to_contain_text("This dialog cannot be shown:")
@@ -96,7 +96,7 @@ BAD_UNIT = '{"type": "field_delta", "seq": 0, "after_seq": SEQ, "units": {"FF-01
 
 
 @pytest.mark.parametrize("reported", [BAD_UNIT, "no JSON", "null"])
-def test_a_message_that_fails_costs_itself_alone(stage: Stage, reported: str) -> None:
+def test_failing_message_affects_no_other(stage: Stage, reported: str) -> None:
     page, station = stage.open(scenes.quiet(3))
     station.say(reported.replace("SEQ", str(station.picture.seq)))
     expect(page.locator(".faults")).to_contain_text("A message of the station cannot be shown:")
@@ -107,7 +107,7 @@ def test_a_message_that_fails_costs_itself_alone(stage: Stage, reported: str) ->
     expect(page.locator(".cards")).to_contain_text("Ada Newcomer")
 
 
-def test_of_a_damaged_plan_the_map_says_what_is_left_out(stage: Stage) -> None:
+def test_omitted_features_of_a_damaged_plan_are_reported(stage: Stage) -> None:
     plan = json.loads(scenes.PLAN.read_bytes())
     plan["muster"]["damage"] = "The plan is damaged: feature 3"
     encoded = msgspec.Raw(json.dumps(plan).encode())
@@ -117,7 +117,7 @@ def test_of_a_damaged_plan_the_map_says_what_is_left_out(stage: Stage) -> None:
     )
 
 
-def test_while_the_link_is_lost_nothing_says_that_the_station_is_well(stage: Stage) -> None:
+def test_lost_link_hides_the_stations_health(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet(3))
     header = page.locator(".header")
     expect(header).to_contain_text("Base station OK")

@@ -29,7 +29,7 @@ def ink(page: Page, colours: tuple[str, ...]) -> int:
     return sum(painted(page, colour) for colour in colours)
 
 
-def test_the_way_of_who_is_down_stays_until_the_alarm_is_resolved(stage: Stage) -> None:
+def test_trail_of_a_casualty_is_complete_until_the_alarm_is_resolved(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     assert station.picture.units[DOWN].alarms
     colours = ("--immediate",)
@@ -47,7 +47,7 @@ def test_the_way_of_who_is_down_stays_until_the_alarm_is_resolved(stage: Stage) 
     assert ink(page, colours) < whole - 100
 
 
-def test_the_way_of_who_is_chosen_is_whole(stage: Stage) -> None:
+def test_trail_of_the_chosen_member_is_complete(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     none = wire.Trail(scenes.unit_id(CALM), msgspec.Raw(b"[]"))
     station.show_trail(none)

@@ -88,7 +88,7 @@ async def test_a_person_gets_a_photo_and_a_unit(
     ],
     ids=["no picture", "cut short", "too large", "too large for its kind"],
 )
-async def test_what_is_no_photo_is_refused(
+async def test_invalid_photo_is_refused(
     commander: httpx.AsyncClient, upload: Callable[[], bytes], reason: str
 ) -> None:
     person_id = (await commander.post("/people", json={"name": "Ada"})).json()["person_id"]
@@ -144,7 +144,7 @@ async def acknowledge(commander: httpx.AsyncClient, alarm_id: str, seen_ms: int)
 
 
 @pytest.mark.parametrize("what", ["acknowledge", "resolve"])
-async def test_an_alarm_that_was_raised_anew_is_not_dealt_with_as_it_was_seen_before(
+async def test_action_on_an_alarm_raised_again_since_is_refused(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, what: str
 ) -> None:
     await commander.post("/units", json={"unit_id": "FF-01"})
@@ -167,7 +167,7 @@ async def test_an_alarm_that_was_raised_anew_is_not_dealt_with_as_it_was_seen_be
     assert (await commander.post(f"{path}/{what}", json=as_seen)).status_code == 204
 
 
-async def test_who_deals_with_an_alarm_says_which_raising_they_saw(
+async def test_alarm_action_without_its_raising_is_refused(
     station: DeskStation, commander: httpx.AsyncClient
 ) -> None:
     station.drive.submit("station", ReportProblem("log", "It fails"))
@@ -179,7 +179,7 @@ async def test_who_deals_with_an_alarm_says_which_raising_they_saw(
         assert refused.json()["detail"] == "last_raised_ms is missing; fill it in"
 
 
-async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
+async def test_alarms_of_an_incident_show_when_they_were_raised_again(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     """Worse, or again after somebody had acknowledged it; not where it eased, nor afterwards."""
@@ -228,7 +228,7 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
 
 
 @pytest.mark.parametrize("part", ["log", "apart engine-2", "flood FF-01@tracker"])
-async def test_whatever_part_of_the_station_fails_people_can_deal_with_it(
+async def test_alarm_of_any_failed_part_of_the_station_can_be_resolved(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, part: str
 ) -> None:
     station.drive.submit("station", ReportProblem(part, "It fails"))
@@ -285,7 +285,7 @@ async def test_tracks_can_be_thinned(
     assert all(point in every["points"] for point in thin["points"])
 
 
-async def test_exports_say_what_they_need_and_hold_the_track(
+async def test_exports_contain_the_track_or_report_what_is_missing(
     station: DeskStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
@@ -333,7 +333,7 @@ async def test_a_plan_without_scale_is_refused(commander: httpx.AsyncClient) -> 
     assert (await commander.get("/site/plan")).json() == plan
 
 
-async def test_a_plan_with_walls_on_a_floor_of_no_height_is_refused(
+async def test_plan_with_walls_on_a_floor_without_height_is_refused(
     commander: httpx.AsyncClient,
 ) -> None:
     """Nobody would heed them, and nobody would see that."""
@@ -363,7 +363,7 @@ async def test_errors_are_sentences(commander: httpx.AsyncClient) -> None:
     assert not_finite.status_code == 422
 
 
-async def test_what_was_done_is_in_the_audit(
+async def test_actions_are_in_the_audit(
     commander: httpx.AsyncClient, administrator: httpx.AsyncClient
 ) -> None:
     await commander.post("/incidents", json={"name": "Kitchen"})
@@ -371,7 +371,7 @@ async def test_what_was_done_is_in_the_audit(
     assert ("commander", "OpenIncident") in {(one["by"], one["action"]) for one in entries}
 
 
-async def test_users_are_an_administrators_work(
+async def test_users_are_managed_by_administrators(
     station: DeskStation, administrator: httpx.AsyncClient
 ) -> None:
     new = {"username": "mia", "password": PASSWORD, "role": "viewer"}

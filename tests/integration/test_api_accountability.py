@@ -33,7 +33,7 @@ async def states(client: AsyncClient) -> dict[str, str]:
     return {one["unit_id"]: one["state"] for one in (await client.get("/accountability")).json()}
 
 
-async def test_green_warning_overdue_and_ticked_off(
+async def test_accountability_goes_from_green_to_overdue_and_confirmed(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -63,7 +63,7 @@ async def test_green_warning_overdue_and_ticked_off(
         assert (await commander.post("/check-ins", json=everyone)).status_code == 409
 
 
-async def test_nobody_is_confirmed_by_being_given_a_unit(
+async def test_assignment_of_a_unit_confirms_no_member(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -127,7 +127,7 @@ async def test_an_answer_by_radio_to_a_par_request_is_undone(station: DeskStatio
         assert none.status_code == 404
 
 
-async def test_an_incident_begins_with_the_times_of_the_station(station: DeskStation) -> None:
+async def test_incident_starts_with_the_times_of_the_station(station: DeskStation) -> None:
     usual = {"par_interval_s": 900.0, "work_limit_s": 1500.0}
     station.app.state.services = dataclasses.replace(
         station.services, accountability=AccountabilityConfig(**usual)
@@ -151,7 +151,7 @@ async def test_an_incident_begins_with_the_times_of_the_station(station: DeskSta
         ("PUT", "/incidents/i/accountability", {"par_interval_s": 600, "work_limit_s": 600}),
     ],
 )
-async def test_a_viewer_vouches_for_nobody(
+async def test_check_in_by_a_viewer_is_refused(
     station: DeskStation, method: str, path: str, body: dict[str, object]
 ) -> None:
     async with station.client(Role.VIEWER) as viewer:

@@ -57,7 +57,7 @@ async def test_every_route_refuses_a_parameter_that_it_does_not_take(
         ),
     ],
 )
-async def test_the_refusal_names_what_was_probably_meant(
+async def test_refusal_suggests_the_probable_parameter(
     station: DeskStation, path: str, reported: str
 ) -> None:
     async with station.client(Role.VIEWER) as viewer:
@@ -92,7 +92,7 @@ async def test_head_is_answered_wherever_get_is(station: DeskStation) -> None:
                 assert head.headers["content-length"] == get.headers["content-length"], path
 
 
-async def test_a_method_that_is_not_answered_is_reported_those_that_are(
+async def test_refused_method_gets_the_allowed_ones(
     station: DeskStation,
 ) -> None:
     """All of the address, though each method is a route of its own."""

@@ -85,7 +85,7 @@ async def carried_out(scene: Scene) -> list[str]:
     return [entry["action"] for entry in entries]
 
 
-async def test_while_the_database_hangs_people_are_answered_and_it_has_all_of_it_afterwards(
+async def test_requests_are_answered_while_the_database_hangs_and_stored_later(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def flush(*_: object) -> bool:
@@ -147,7 +147,7 @@ async def test_while_the_database_hangs_people_are_answered_and_it_has_all_of_it
         (("PUT", "/site/anchor", {"lat_deg": 50.0, "lon_deg": 8.5}), "/site/anchor", "8.5"),
     ],
 )
-async def test_who_was_answered_finds_it_in_what_is_read_next(
+async def test_answered_change_is_in_the_next_read(
     scene: Scene,
     request_: tuple[str, str, object],
     read: str,
@@ -165,7 +165,7 @@ async def test_who_was_answered_finds_it_in_what_is_read_next(
 
 
 @pytest.mark.usefixtures("slow_database")
-async def test_who_wears_a_unit_is_no_longer_in_the_way_of_what_follows(
+async def test_unassignment_is_known_to_the_next_request(
     scene: Scene,
 ) -> None:
     (ada,) = (await scene.commander.get("/people")).json()
@@ -175,7 +175,7 @@ async def test_who_wears_a_unit_is_no_longer_in_the_way_of_what_follows(
     assert (await scene.commander.delete(path)).status_code == 204
 
 
-async def test_who_waits_for_the_database_keeps_nobody_from_acting(
+async def test_waiting_reads_do_not_block_actions(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(current_tables, "MAX_WAIT_S", PATIENCE_S)
@@ -188,7 +188,7 @@ async def test_who_waits_for_the_database_keeps_nobody_from_acting(
     assert {answer.status_code for answer in answers} == {200}
 
 
-async def test_a_database_that_does_not_keep_up_is_read_as_it_is(
+async def test_database_that_does_not_keep_up_is_read_in_its_current_state(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(current_tables, "MAX_WAIT_S", 0.05)
@@ -220,7 +220,7 @@ async def test_an_alarm_that_is_unknown_is_distinguished_from_one_that_is_over(
     assert unknown.json()["detail"] == "There is no such alarm."
 
 
-async def test_what_a_database_that_does_not_keep_up_cannot_tell_is_refused_as_it_was(
+async def test_alarm_unknown_to_a_late_database_is_refused_as_not_open(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(SqlProjection, "flush", lambda *_: False)
@@ -238,7 +238,7 @@ async def test_what_a_database_that_does_not_keep_up_cannot_tell_is_refused_as_i
         ("PUT", "/reference-barometer", {"unit_id": "FF-99"}),
     ],
 )
-async def test_an_action_on_what_is_not_there_is_no_conflict(
+async def test_action_on_an_unknown_object_is_not_found(
     scene: Scene, method: str, path: str, body: object
 ) -> None:
     answer = await scene.commander.request(method, path, json=body)
@@ -246,7 +246,7 @@ async def test_an_action_on_what_is_not_there_is_no_conflict(
     assert answer.json()["detail"].startswith("There is no ")
 
 
-async def test_an_opening_that_is_repeated_when_the_incident_is_over_is_answered_as_it_is_now(
+async def test_repeated_opening_after_the_close_returns_the_closed_incident(
     scene: Scene, clock: ManualClock
 ) -> None:
     await act(scene, "POST", "/alarms/{mayday}/resolve", scene.seen)

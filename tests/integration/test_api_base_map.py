@@ -30,7 +30,7 @@ def address(world: tuple[float, ...] = WORLD, crs: str = "EPSG:4326") -> str:
 PNG = {"Content-Type": "image/png"}
 
 
-async def test_a_map_is_set_seen_and_removed(station: DeskStation) -> None:
+async def test_map_is_set_read_and_removed(station: DeskStation) -> None:
     async with station.client(Role.ADMINISTRATOR) as admin:
         assert (await admin.get("/site/base-map")).json() is None
         answer = await admin.put(address(), content=picture(), headers=PNG)
@@ -51,7 +51,7 @@ async def test_a_map_is_set_seen_and_removed(station: DeskStation) -> None:
         assert gone.status_code == 404
 
 
-async def test_a_large_map_is_made_smaller_and_stays_where_it_is(station: DeskStation) -> None:
+async def test_large_map_is_scaled_down_with_unchanged_corners(station: DeskStation) -> None:
     world = (8e-6, 0.0, 0.0, -4.5e-6, 4.0, 52.0)
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world), content=picture("JPEG", (8192, 4096)), headers=PNG)
@@ -74,7 +74,7 @@ async def test_a_large_map_is_made_smaller_and_stays_where_it_is(station: DeskSt
         (picture(), (1.6e-5, 0.0, 1.6e-5, 0.0, 4.0, 52.0), "a line"),
     ],
 )
-async def test_what_is_no_map_is_refused_with_a_sentence(
+async def test_invalid_map_is_refused_with_a_reason(
     station: DeskStation, content: bytes, world: tuple[float, ...], why: str
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as admin:
@@ -91,7 +91,7 @@ async def test_a_world_file_has_six_numbers(station: DeskStation, world: tuple[f
         assert answer.status_code == 422
 
 
-async def test_only_an_administrator_gives_the_map(station: DeskStation) -> None:
+async def test_map_is_set_by_administrators_only(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         answer = await commander.put(address(), content=picture(), headers=PNG)
         assert answer.status_code == 403
@@ -99,7 +99,7 @@ async def test_only_an_administrator_gives_the_map(station: DeskStation) -> None
         assert (await commander.get("/site/base-map")).status_code == 200
 
 
-async def test_a_surveys_picture_lies_in_a_utm_zone(station: DeskStation) -> None:
+async def test_map_of_a_survey_is_placed_in_its_utm_zone(station: DeskStation) -> None:
     world = (0.2, 0.0, 0.0, -0.2, 500_000.1, 5_761_038.1)  # on the meridian, 9 degrees east
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world, "EPSG:25832"), content=picture(), headers=PNG)
@@ -111,14 +111,14 @@ async def test_a_surveys_picture_lies_in_a_utm_zone(station: DeskStation) -> Non
             assert "UTM zone" in answer.json()["detail"]
 
 
-def test_metres_of_the_webs_maps_are_the_same_place() -> None:
+def test_web_mercator_metres_are_converted() -> None:
     x, y = 445_277.963, 6_800_125.454  # 4 degrees east, 52 degrees north
     corners = corners_of((1.0, 0.0, 0.0, -1.0, x, y), "EPSG:3857", 200, 100)
     assert corners.upper_left == pytest.approx((52.0, 4.0), abs=1e-5)
     assert corners.lower_left[0] < corners.upper_left[0]
 
 
-def test_numbers_that_are_none_are_no_place() -> None:
+def test_invalid_numbers_of_a_world_file_are_refused() -> None:
     for value in (float("nan"), float("inf"), 1e300):
         with pytest.raises(ConfigError):
             corners_of((1.6e-5, 0.0, 0.0, -9e-6, 4.0, value), "EPSG:4326", 200, 100)

@@ -38,7 +38,7 @@ async def chunks(count: int) -> AsyncIterator[bytes]:
         ("PUT", "/people/x/photo", MAX_UPLOAD_BYTES),
     ],
 )
-async def test_a_body_without_end_is_refused(
+async def test_endless_body_is_refused(
     commander: httpx.AsyncClient, method: str, path: str, most: int
 ) -> None:
     reported = await commander.request(method, path, content=b"x" * (most + 1), headers=JSON)
@@ -51,9 +51,7 @@ async def test_a_body_without_end_is_refused(
 
 
 @pytest.mark.parametrize("path", ["/site/plan", "/people/x/photo", "/site/base-map?world=1"])
-async def test_nobody_who_is_not_logged_in_has_a_large_body_read(
-    station: DeskStation, path: str
-) -> None:
+async def test_body_of_a_request_without_login_is_not_read(station: DeskStation, path: str) -> None:
     read = 0
 
     async def body() -> AsyncIterator[bytes]:
@@ -68,13 +66,13 @@ async def test_nobody_who_is_not_logged_in_has_a_large_body_read(
 
 
 @pytest.mark.parametrize("bomb", ["[" * 60_000, '{"a":' * 10_000, "9" * 60_000, '"\\ud800"'])
-async def test_json_that_is_a_trap_is_refused(commander: httpx.AsyncClient, bomb: str) -> None:
+async def test_deeply_nested_json_is_refused(commander: httpx.AsyncClient, bomb: str) -> None:
     for path in ("/people", "/commands", "/tokens"):
         assert (await commander.post(path, content=bomb)).status_code in (400, 422)
     assert (await commander.put("/site/plan", content=bomb)).status_code in (400, 422)
 
 
-async def test_users_who_send_slowly_delay_no_picture_and_no_plan_of_others(
+async def test_slow_uploads_delay_no_picture_and_no_plan_of_others(
     station: DeskStation, commander: httpx.AsyncClient
 ) -> None:
     station.app.state.upload_turns = UploadTurns(turn_s=0.1)
@@ -128,7 +126,7 @@ FORM = b'{"name": "Ada"}'
     ],
 )
 @pytest.mark.parametrize(("method", "path"), [("POST", "/people"), ("PUT", "/site/plan")])
-async def test_who_sends_no_json_is_reported_to(
+async def test_body_that_is_no_json_is_refused_with_a_reason(
     commander: httpx.AsyncClient, method: str, path: str, body: bytes, kind: str | None
 ) -> None:
     headers = {} if kind is None else {"content-type": kind}
@@ -141,7 +139,7 @@ async def test_who_sends_no_json_is_reported_to(
 @pytest.mark.parametrize(
     ("body", "kind"), [(b"", None), (b"[1]", "application/json"), (b"\xff", "application/json")]
 )
-async def test_who_sends_no_picture_is_reported_to(
+async def test_body_that_is_no_picture_is_refused_with_a_reason(
     commander: httpx.AsyncClient, body: bytes, kind: str | None
 ) -> None:
     headers = {} if kind is None else {"content-type": kind}

@@ -47,7 +47,7 @@ async def audited(station: DeskStation, action: str) -> list[dict[str, Any]]:
     return [entry for entry in entries if entry["action"] == action]
 
 
-async def test_a_mayday_and_who_is_inside_are_named_before_it_is_closed(
+async def test_closing_names_open_alarms_and_members_inside(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -75,7 +75,7 @@ async def test_a_mayday_and_who_is_inside_are_named_before_it_is_closed(
     assert open_alarms(station) == [alarm], "the alarm stays open"
 
 
-async def test_what_has_come_up_since_person_looked_is_named(
+async def test_closing_names_alarms_that_are_new_since(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -89,7 +89,7 @@ async def test_what_has_come_up_since_person_looked_is_named(
     assert "Mayday from Ana" in refused.json()["detail"]
 
 
-async def test_what_is_the_station_s_own_asks_nothing(station: DeskStation) -> None:
+async def test_alarms_of_the_station_do_not_prevent_closing(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         path = await open_incident(commander)
         station.drive.submit("station", ReportProblem("log", "It fails"))
@@ -100,7 +100,7 @@ async def test_what_is_the_station_s_own_asks_nothing(station: DeskStation) -> N
 @pytest.mark.parametrize(
     "body", [{"despite_alarm_ids": "all"}, {"despite_unit_ids": ["a b"]}, {"force": True}]
 )
-async def test_what_makes_no_sense_closes_nothing(
+async def test_invalid_request_closes_nothing(
     station: DeskStation, body: dict[str, object]
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -109,7 +109,7 @@ async def test_what_makes_no_sense_closes_nothing(
         assert (await commander.get(path)).json()["closed_ms"] is None
 
 
-def test_of_very_many_the_first_are_named() -> None:
+def test_long_list_of_obstacles_names_the_first() -> None:
     alarms = tuple(
         AlarmView(f"fall:{n}", "fall", f"FF-{n}", 1, "raised", "", f"fall {n}", "", 0, 0, 0)
         for n in range(MAX_NAMED + 3)

@@ -15,7 +15,7 @@ from tests.rig.desk_station import DeskStation
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 
 
-async def test_a_crew_is_reported_and_its_answers_are_shown(
+async def test_command_to_a_crew_is_sent_and_its_answers_are_shown(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -53,7 +53,7 @@ async def test_a_crew_is_reported_and_its_answers_are_shown(
     assert {"SendCommand", "ConfirmCommand"} <= {entry["action"] for entry in entries}
 
 
-async def test_a_floor_is_reported_and_so_is_whose_floor_is_not_known(
+async def test_command_to_a_floor_includes_units_with_unknown_floor(
     station: DeskStation, clock: ManualClock
 ) -> None:
     """A plan of two floors; FF-01 is on the upper one, of FF-03 no position has come."""
@@ -84,7 +84,7 @@ async def test_a_floor_is_reported_and_so_is_whose_floor_is_not_known(
         assert [unit["unit_id"] for unit in reported] == ["FF-01", "FF-03"]
 
 
-async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(
+async def test_command_shows_whether_units_can_notify_and_have_notified(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -106,7 +106,7 @@ async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(
     assert (second["state"], second["notified_ms"]) == ("queued", None)
 
 
-async def test_a_viewer_looks_on(station: DeskStation) -> None:
+async def test_viewer_reads_commands_and_sends_none(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.post("/commands", json=EVACUATE)).status_code == 403
         refused = await viewer.post("/commands/c1/confirm", json={"unit_id": "FF-01"})
@@ -131,7 +131,7 @@ async def test_a_viewer_looks_on(station: DeskStation) -> None:
         ({"more": 1}, 422, "more"),
     ],
 )
-async def test_what_makes_no_sense_is_refused(
+async def test_invalid_command_is_refused(
     station: DeskStation, change: dict[str, object], status: int, word: str
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:

@@ -40,7 +40,7 @@ async def post(client: AsyncClient, **change: Any) -> dict[str, Any]:
     return content
 
 
-async def test_it_is_offered_updated_once_and_opened_by_a_person(
+async def test_dispatch_is_offered_updated_and_opened_by_a_user(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
@@ -76,7 +76,7 @@ async def test_it_is_offered_updated_once_and_opened_by_a_person(
         assert actions.count("NoteDispatch") == 3  # not of what was known before
 
 
-async def test_a_dismissed_one_stays_dismissed(station: DeskStation) -> None:
+async def test_dismissed_dispatch_stays_dismissed(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         number = {"number": FIRE["number"]}
         assert (await client.post("/dispatch/dismissals", json=number)).status_code == 404
@@ -87,7 +87,9 @@ async def test_a_dismissed_one_stays_dismissed(station: DeskStation) -> None:
         assert one["dispatch"]["is_dismissed"]
 
 
-async def test_opened_automatically_unless_an_incident_is_open(automatic: DeskStation) -> None:
+async def test_dispatch_opens_automatically_unless_an_incident_is_open(
+    automatic: DeskStation,
+) -> None:
     async with automatic.client(Role.COMMANDER) as client:
         first = await post(client)
         assert first["outcome"] == "opened"
@@ -105,7 +107,7 @@ async def test_opened_automatically_unless_an_incident_is_open(automatic: DeskSt
         assert over["outcome"] == "offered"
 
 
-async def test_a_token_for_dispatch_does_nothing_else(station: DeskStation) -> None:
+async def test_token_for_dispatch_is_limited_to_dispatch(station: DeskStation) -> None:
     accounts = station.services.accounts
     _, secret = accounts.add_token("commander", "cad", Role.COMMANDER, None, ["dispatch"])
     async with station.client() as client:
@@ -115,7 +117,7 @@ async def test_a_token_for_dispatch_does_nothing_else(station: DeskStation) -> N
         assert (await client.get("/people")).status_code == 403
 
 
-async def test_bad_bodies_are_refused_with_a_sentence(station: DeskStation) -> None:
+async def test_invalid_bodies_are_refused_with_a_reason(station: DeskStation) -> None:
     json_type = {"content-type": "application/json"}
     async with station.client(Role.COMMANDER) as client:
         for path, content, headers, status in (

@@ -54,7 +54,7 @@ def has_text(about: Document) -> bool:
     return bool(about.get("description", "").strip())
 
 
-def test_nothing_is_described_that_is_not_there(document: Document) -> None:
+def test_every_description_has_a_field_or_parameter(document: Document) -> None:
     asked = {parameter["name"] for _, parameter in parameters(document)}
     answered = {
         known for name, field, _ in fields(document) for known in (field, f"{name}.{field}")
@@ -68,7 +68,7 @@ def test_a_field_is_described_by_one_subject() -> None:
     assert sorted(described) == sorted(FIELDS)
 
 
-def test_names_are_of_one_thing(document: Document) -> None:
+def test_schema_names_and_operation_ids_are_unique(document: Document) -> None:
     assert [name for name in document["components"]["schemas"] if "__" in name] == []
     ids = [operation["operationId"] for operation in operations(document)]
     assert len(ids) == len(set(ids)) > 80

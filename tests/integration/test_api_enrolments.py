@@ -78,7 +78,9 @@ async def test_an_administrator_enrols_a_unit(station: DeskStation, pki: PkiFold
     assert made["text"] not in str(audited(station))
 
 
-async def test_it_is_not_made_again_but_renewed(station: DeskStation, pki: PkiFolder) -> None:
+async def test_second_enrolment_is_refused_and_renewal_is_allowed(
+    station: DeskStation, pki: PkiFolder
+) -> None:
     """The key is nowhere: whose answer was lost sends another request, and no key repeats one."""
     async with station.client(Role.ADMINISTRATOR) as client:
         key = {"Idempotency-Key": "k1"}
@@ -93,7 +95,7 @@ async def test_it_is_not_made_again_but_renewed(station: DeskStation, pki: PkiFo
     assert [action for _, action, _ in audited(station)] == ["RenewedEnrolment", "MadeEnrolment"]
 
 
-async def test_nobody_is_renewed_who_is_not_enrolled(station: DeskStation, pki: PkiFolder) -> None:
+async def test_renewal_of_an_unknown_unit_is_refused(station: DeskStation, pki: PkiFolder) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         answer = await client.post("/enrolments", json=UNIT | {"renew": True})
         assert answer.status_code == 409
@@ -115,7 +117,7 @@ async def test_a_revoked_unit_is_not_listed_and_is_enrolled_anew(
 
 
 @pytest.mark.parametrize("address", ["192.0.2.20", "2001:db8::7", "", "::ffff:192.0.2.20"])
-async def test_the_key_goes_over_no_plain_network(
+async def test_private_key_is_not_sent_over_a_plain_network(
     station: DeskStation, pki: PkiFolder, address: str
 ) -> None:
     async with client_at(station, address) as client:
@@ -128,14 +130,14 @@ async def test_the_key_goes_over_no_plain_network(
 
 
 @pytest.mark.parametrize("address", ["127.0.0.1", "::1", "::ffff:127.0.0.1"])
-async def test_on_the_stations_own_machine_it_needs_no_tls(
+async def test_enrolment_on_the_stations_machine_needs_no_tls(
     station: DeskStation, pki: PkiFolder, address: str
 ) -> None:
     async with client_at(station, address) as client:
         assert (await client.post("/enrolments", json=UNIT)).status_code == 201
 
 
-async def test_without_an_authority_it_is_stated_how_to_make_one(
+async def test_enrolment_without_an_authority_names_the_remedy(
     station: DeskStation, tmp_path: Path
 ) -> None:
     set_services(station, pki=PkiFolder(tmp_path))
@@ -152,7 +154,7 @@ async def test_without_an_authority_it_is_stated_how_to_make_one(
         assert "enrols no units now" in answer.json()["detail"]
 
 
-async def test_a_further_station_says_where_to_enrol(
+async def test_further_station_refers_to_the_first_for_enrolments(
     station: DeskStation, pki: PkiFolder, tmp_path: Path
 ) -> None:
     other = PkiFolder(tmp_path / "other")
@@ -164,7 +166,7 @@ async def test_a_further_station_says_where_to_enrol(
         assert "at the first station alone; enrol and renew there" in answer.json()["detail"]
 
 
-async def test_what_is_not_in_the_audit_is_shown_to_nobody(
+async def test_enrolment_that_cannot_be_audited_is_refused(
     station: DeskStation, pki: PkiFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def hangs(*_: object) -> None:

@@ -36,7 +36,7 @@ async def test_a_failure_of_the_station_is_503_and_logged(
     assert f"GET /api/v1/incidents: {error}" in caplog.text
 
 
-async def test_a_mistake_of_the_station_is_answered_like_every_problem(
+async def test_unhandled_error_is_answered_as_a_problem(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: object) -> None:
@@ -54,7 +54,7 @@ async def test_a_mistake_of_the_station_is_answered_like_every_problem(
     assert caplog.text.count("ValueError: of the program") == 1
 
 
-async def test_what_the_station_has_not_done_in_time_it_may_still_do(
+async def test_timeout_states_that_the_action_may_still_be_done(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who is told to try again opens two."""
@@ -68,7 +68,7 @@ async def test_what_the_station_has_not_done_in_time_it_may_still_do(
     assert not waiting.cancelled()
 
 
-async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskStation) -> None:
+async def test_missing_table_is_a_failure_of_the_station(station: DeskStation) -> None:
     with station.store.write() as session:
         session.connection().exec_driver_sql("DROP TABLE incidents")
     async with station.client(Role.VIEWER) as viewer:
@@ -78,7 +78,7 @@ async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskSta
 
 
 @pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda one: one.name)
-async def test_on_a_full_disk_nothing_is_exported_that_the_audit_does_not_say(
+async def test_export_that_cannot_be_audited_is_refused(
     station: DeskStation, exporter: Exporter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -93,7 +93,7 @@ async def test_on_a_full_disk_nothing_is_exported_that_the_audit_does_not_say(
         assert (await commander.get(path)).status_code == 200
 
 
-async def test_one_whole_incident_at_a_time_takes_the_stations_memory(
+async def test_complete_incidents_are_exported_one_at_a_time(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     inside: list[int] = []

@@ -32,7 +32,7 @@ async def log_in(client: httpx.AsyncClient, password: str = GENERATED) -> bool:
     return bool(answer.json()["must_change_password"])
 
 
-async def test_nothing_else_is_done_before_it_is_changed(first: DeskStation) -> None:
+async def test_requests_before_the_password_change_are_refused(first: DeskStation) -> None:
     async with first.client() as client:
         assert await log_in(client)
         for method, path in addresses():
@@ -44,7 +44,7 @@ async def test_nothing_else_is_done_before_it_is_changed(first: DeskStation) -> 
         assert (await client.get("/me")).json()["must_change_password"] is True
 
 
-async def test_who_has_changed_it_goes_on_without_logging_in_again(first: DeskStation) -> None:
+async def test_session_continues_after_the_password_change(first: DeskStation) -> None:
     async with first.client() as client:
         assert await log_in(client)
         same = {"old_password": GENERATED, "new_password": GENERATED}
@@ -58,7 +58,7 @@ async def test_who_has_changed_it_goes_on_without_logging_in_again(first: DeskSt
         assert not await log_in(other, OWN)
 
 
-async def test_tokens_and_other_users_are_not_concerned(first: DeskStation) -> None:
+async def test_tokens_and_other_users_need_no_password_change(first: DeskStation) -> None:
     async with first.client(Role.ADMINISTRATOR) as program:
         assert (await program.get("/users")).status_code == 200
     _, secret = first.services.accounts.add_token("first", "t", Role.ADMINISTRATOR, None)
@@ -67,7 +67,7 @@ async def test_tokens_and_other_users_are_not_concerned(first: DeskStation) -> N
         assert (await program.get("/users")).status_code == 200
 
 
-async def test_a_station_that_only_replays_asks_for_no_other(first: DeskStation) -> None:
+async def test_replay_station_requires_no_password_change(first: DeskStation) -> None:
     """It could not keep it."""
     services = dataclasses.replace(first.services, is_replay_only=True)
     first.app.state.services = services

@@ -40,7 +40,7 @@ def refused(check: Callable[[], object]) -> bool:
     return False
 
 
-async def test_passwords_cannot_be_tried_without_end(station: DeskStation) -> None:
+async def test_login_attempts_are_limited(station: DeskStation) -> None:
     async with station.client() as client:
         wrong = {"username": "commander", "password": "guess"}
         answers = [(await client.post("/login", json=wrong)) for _ in range(12)]
@@ -51,14 +51,14 @@ async def test_passwords_cannot_be_tried_without_end(station: DeskStation) -> No
         assert (await client.post("/login", json=right)).status_code == 429
 
 
-async def test_a_wrong_name_and_a_wrong_password_look_the_same(station: DeskStation) -> None:
+async def test_wrong_name_and_wrong_password_get_the_same_answer(station: DeskStation) -> None:
     async with station.client() as client:
         one = await client.post("/login", json={"username": "commander", "password": "x"})
         other = await client.post("/login", json={"username": "nobody", "password": "x"})
     assert (one.status_code, one.json()) == (other.status_code, other.json())
 
 
-async def test_an_unknown_name_costs_as_much_as_one_of_an_account(
+async def test_unknown_name_takes_the_same_time_as_a_known_one(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One verification of a hash that was made with the same parameters."""
@@ -87,7 +87,7 @@ async def test_an_unknown_name_costs_as_much_as_one_of_an_account(
         ["192.0.2.1", "::ffff:192.0.2.1"] * 6,
     ],
 )
-def test_another_address_of_one_network_is_no_way_round_the_limit(addresses: list[str]) -> None:
+def test_limit_holds_for_all_addresses_of_a_network(addresses: list[str]) -> None:
     throttle = LoginThrottle()
     for address in addresses[:10]:
         throttle.check(address, "commander")
@@ -96,7 +96,7 @@ def test_another_address_of_one_network_is_no_way_round_the_limit(addresses: lis
     throttle.check("2001:db8:1:3::1", "commander")
 
 
-async def test_headers_that_a_proxy_would_set_are_no_way_round_the_limit(
+async def test_limit_ignores_proxy_headers(
     station: DeskStation,
 ) -> None:
     async with station.client() as client:
@@ -108,7 +108,7 @@ async def test_headers_that_a_proxy_would_set_are_no_way_round_the_limit(
     assert answers[-1].status_code == 429
 
 
-def test_a_minute_later_it_may_be_tried_again_though_the_machines_time_was_put_right(
+def test_limit_ends_after_a_minute_independent_of_the_wall_clock(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seconds, wall_s = Seconds(), time.time()
@@ -124,14 +124,14 @@ def test_a_minute_later_it_may_be_tried_again_though_the_machines_time_was_put_r
     assert refused(lambda: throttle.check(HERE, "commander"))
 
 
-def test_who_tries_one_name_without_end_locks_out_no_other_of_the_place() -> None:
+def test_limit_of_a_name_blocks_no_other_name_of_the_network() -> None:
     throttle = LoginThrottle(Seconds())
     for _ in range(100):
         refused(lambda: throttle.check(HERE, "dispatch"))
     throttle.check(HERE, "commander")
 
 
-def test_all_names_of_a_place_together_have_their_limit() -> None:
+def test_all_names_of_a_network_share_a_limit() -> None:
     throttle = LoginThrottle(Seconds())
     for number in range(60):
         throttle.check(HERE, f"user {number}")
@@ -140,7 +140,7 @@ def test_all_names_of_a_place_together_have_their_limit() -> None:
     throttle.check("192.0.2.2", "commander")
 
 
-def test_what_was_tried_long_ago_takes_no_memory() -> None:
+def test_old_attempts_are_removed_from_memory() -> None:
     seconds = Seconds()
     tries = AttemptLimiter(10, 60.0, seconds)
     for number in range(100):
@@ -150,7 +150,7 @@ def test_what_was_tried_long_ago_takes_no_memory() -> None:
     assert len(tries) <= 11
 
 
-async def test_all_consoles_of_a_place_go_on_at_the_other_station_at_once(
+async def test_login_transfers_are_limited_separately(
     station: DeskStation,
 ) -> None:
     accounts = station.services.accounts
@@ -166,14 +166,14 @@ async def test_all_consoles_of_a_place_go_on_at_the_other_station_at_once(
     assert [one.status_code for one in answers] == [401] * 60 + [429]
 
 
-async def test_an_old_password_cannot_be_guessed_without_end(station: DeskStation) -> None:
+async def test_attempts_at_the_old_password_are_limited(station: DeskStation) -> None:
     guess = {"old_password": "guess", "new_password": f"{PASSWORD} 2"}
     async with station.client(Role.VIEWER) as client:
         answers = [await client.post("/me/password", json=guess) for _ in range(11)]
     assert [one.status_code for one in answers] == [403] * 10 + [429]
 
 
-def test_one_name_has_its_limit_from_all_places_together() -> None:
+def test_name_has_a_limit_over_all_networks() -> None:
     throttle = LoginThrottle(Seconds())
     for number in range(30):
         throttle.check(f"192.0.2.{number}", "commander")
@@ -181,7 +181,7 @@ def test_one_name_has_its_limit_from_all_places_together() -> None:
     throttle.check("192.0.2.99", "viewer")
 
 
-def test_who_has_logged_in_from_a_place_does_so_while_others_guess_the_name() -> None:
+def test_known_network_can_log_in_while_others_guess() -> None:
     throttle = LoginThrottle(Seconds())
     assert throttle.check(HERE, "commander") is False
     throttle.record_login(HERE, "commander")
@@ -193,7 +193,7 @@ def test_who_has_logged_in_from_a_place_does_so_while_others_guess_the_name() ->
     assert refused(lambda: throttle.check(HERE, "commander"))
 
 
-async def test_a_place_that_tried_too_often_is_refused_before_its_request_is_read(
+async def test_blocked_network_is_refused_before_its_request_is_read(
     station: DeskStation,
 ) -> None:
     throttle: LoginThrottle = station.app.state.login_throttle
@@ -205,7 +205,7 @@ async def test_a_place_that_tried_too_often_is_refused_before_its_request_is_rea
     assert (answer.headers["retry-after"], answer.headers["connection"]) == ("60", "close")
 
 
-async def test_few_log_ins_wait_and_places_are_left_for_who_is_known() -> None:
+async def test_waiting_logins_are_limited_with_places_for_known_networks() -> None:
     queue, go = LoginQueue(), threading.Event()
     held = [asyncio.create_task(queue.run(go.wait, is_known=False)) for _ in range(6)]
     await asyncio.sleep(0)
@@ -219,7 +219,7 @@ async def test_few_log_ins_wait_and_places_are_left_for_who_is_known() -> None:
     queue.close()
 
 
-async def test_what_reads_much_takes_not_all_threads(
+async def test_large_reads_do_not_use_all_threads(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The framework has forty of them for all routes."""

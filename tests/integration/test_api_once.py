@@ -42,7 +42,7 @@ async def commander(station: DeskStation, clock: ManualClock) -> AsyncIterator[h
         ("/incidents", {"name": "Kitchen"}, "/incidents"),
     ],
 )
-async def test_what_is_sent_again_with_its_key_is_done_once(
+async def test_repeated_request_with_its_key_is_done_once(
     commander: httpx.AsyncClient, clock: ManualClock, path: str, body: object, listed: str
 ) -> None:
     first = await commander.post(path, json=body, headers=KEY)
@@ -53,7 +53,7 @@ async def test_what_is_sent_again_with_its_key_is_done_once(
     assert len((await commander.get(listed)).json()) == 1
 
 
-async def test_what_was_refused_is_refused_again_whatever_has_happened_since(
+async def test_refused_request_is_refused_again_with_the_same_answer(
     commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     rest = {"resting": True}
@@ -77,7 +77,7 @@ async def test_what_was_refused_is_refused_again_whatever_has_happened_since(
     [("/commands", EVACUATE | {"expires_s": 61}), ("/check-ins", {"target": {"everyone": True}})],
     ids=["another body", "another path"],
 )
-async def test_a_key_that_came_with_another_request_is_refused(
+async def test_key_of_another_request_is_refused(
     commander: httpx.AsyncClient, path: str, body: object
 ) -> None:
     await commander.post("/commands", json=EVACUATE, headers=KEY)
@@ -87,7 +87,7 @@ async def test_a_key_that_came_with_another_request_is_refused(
     assert len((await commander.get("/commands")).json()) == 1
 
 
-async def test_the_same_stated_of_another_thing_is_another_request(
+async def test_same_body_for_another_object_is_another_request(
     station: DeskStation, commander: httpx.AsyncClient
 ) -> None:
     station.drive.submit("station", ReportProblem("log", "It fails"))
@@ -117,7 +117,7 @@ async def test_a_person_is_added_once(station: DeskStation, commander: httpx.Asy
     assert [one["action"] for one in entries].count("AddedPerson") == 2
 
 
-async def test_a_person_is_called_in_the_picture_as_in_the_roster_whatever_is_sent_again(
+async def test_repeated_rename_keeps_state_and_roster_consistent(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     """To change is to say how it is to be: again is no second time, and may be later."""
@@ -131,28 +131,30 @@ async def test_a_person_is_called_in_the_picture_as_in_the_roster_whatever_is_se
     assert (await commander.get(path)).json()["name"] == unit.person.name == "Bea"
 
 
-async def test_a_key_is_its_persons_own(station: DeskStation, commander: httpx.AsyncClient) -> None:
+async def test_keys_of_different_users_are_independent(
+    station: DeskStation, commander: httpx.AsyncClient
+) -> None:
     mine = (await commander.post("/commands", json=EVACUATE, headers=KEY)).json()
     async with station.client(Role.ADMINISTRATOR) as another:
         theirs = (await another.post("/commands", json=EVACUATE, headers=KEY)).json()
     assert theirs["command_id"] != mine["command_id"]
 
 
-async def test_quotes_are_none_of_the_key(commander: httpx.AsyncClient) -> None:
+async def test_quotes_are_not_part_of_the_key(commander: httpx.AsyncClient) -> None:
     first = await commander.post("/commands", json=EVACUATE, headers=KEY)
     bare = {"Idempotency-Key": KEY["Idempotency-Key"].strip('"')}
     assert (await commander.post("/commands", json=EVACUATE, headers=bare)).json() == first.json()
 
 
 @pytest.mark.parametrize("key", ["", '""', "a b", "x" * 129, '"x'])
-async def test_what_is_no_key_is_reported_so(commander: httpx.AsyncClient, key: str) -> None:
+async def test_invalid_key_is_refused_with_a_reason(commander: httpx.AsyncClient, key: str) -> None:
     refused = await commander.post("/commands", json=EVACUATE, headers={"Idempotency-Key": key})
     assert refused.status_code == 422
     assert refused.json()["detail"].startswith("Idempotency-Key must be 1 to 128 letters")
     assert (await commander.get("/commands")).json() == []
 
 
-async def test_who_gave_a_key_and_had_no_answer_is_ordered_to_ask_again(
+async def test_timeout_with_a_key_advises_to_repeat_the_request(
     station: DeskStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     waiting: Future[ActionResult] = Future()
@@ -163,7 +165,7 @@ async def test_who_gave_a_key_and_had_no_answer_is_ordered_to_ask_again(
     assert "with the same Idempotency-Key it is done once" in answer.json()["detail"]
 
 
-async def test_the_schema_tells_of_the_key_wherever_something_is_done(
+async def test_schema_describes_the_key_for_every_action(
     commander: httpx.AsyncClient,
 ) -> None:
     paths = (await commander.get("/openapi.json")).json()["paths"]
@@ -197,7 +199,7 @@ async def test_the_schema_tells_of_the_key_wherever_something_is_done(
     }
 
 
-async def test_who_had_no_answer_can_ask_whether_it_was_carried_out(
+async def test_outcome_of_a_key_can_be_queried(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     path = "/idempotency-keys/8e03978e-40d5-43dd-bc93-6894a57f9324"
@@ -210,7 +212,7 @@ async def test_who_had_no_answer_can_ask_whether_it_was_carried_out(
         assert (await other.get(path)).status_code == 404, "a key counts for who sent it"
 
 
-async def test_an_added_person_is_carried_out_and_a_refusal_is_not(
+async def test_key_of_a_refused_request_has_no_outcome(
     commander: httpx.AsyncClient,
 ) -> None:
     added, refused = {"Idempotency-Key": "k-added"}, {"Idempotency-Key": "k-refused"}

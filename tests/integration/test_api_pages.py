@@ -74,7 +74,7 @@ def entries(t_ns: int, number: str) -> list[models.Base]:
 
 
 @pytest.mark.parametrize("path", LISTS)
-async def test_pages_have_everything_once(station: DeskStation, path: str) -> None:
+async def test_pages_contain_every_entry_once(station: DeskStation, path: str) -> None:
     fill(station.store, TIMES_NS)
     name, time = LISTS[path]
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -91,7 +91,7 @@ async def test_pages_have_everything_once(station: DeskStation, path: str) -> No
     assert all(len(page) == 2 or page[1][time] == page[-1][time] for page in pages[:-1])
 
 
-async def test_what_is_searched_for_is_paged_too(station: DeskStation) -> None:
+async def test_search_results_are_paged(station: DeskStation) -> None:
     fill(station.store, TIMES_NS)
     async with station.client(Role.VIEWER) as client:
 
@@ -114,7 +114,7 @@ async def test_what_is_searched_for_is_paged_too(station: DeskStation) -> None:
 
 
 @pytest.mark.parametrize("path", LISTS)
-async def test_a_page_is_bounded_unasked(station: DeskStation, path: str) -> None:
+async def test_page_without_a_limit_is_bounded(station: DeskStation, path: str) -> None:
     fill(station.store, [(number + 1) * NS_PER_MS for number in range(150)])
     async with station.client(Role.ADMINISTRATOR) as client:
         assert len((await client.get(path)).json()) == 100

@@ -21,7 +21,7 @@ async def crews(client: httpx.AsyncClient) -> dict[str, tuple[str, str]]:
     return {one["name"]: (one["crew"], one["role"]) for one in people}
 
 
-async def test_a_preview_does_nothing_and_a_second_import_changes_nothing(
+async def test_preview_and_repeated_import_change_nothing(
     station: DeskStation,
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
@@ -52,7 +52,7 @@ async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
         assert "more than 2000 people" in many.json()["detail"]
 
 
-async def test_anyone_wears_a_unit_is_shown_with_the_new_crew(station: DeskStation) -> None:
+async def test_wearer_is_shown_with_the_imported_crew(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         person = (await client.post("/people", json={"name": "Ada"})).json()
         await client.post("/units", json={"unit_id": "FF-01"})

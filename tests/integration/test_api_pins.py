@@ -67,7 +67,7 @@ async def test_a_pin_is_set_moved_and_removed(
         assert position.east_m == pytest.approx(0.0, abs=0.1)
 
 
-async def test_the_audit_says_whose_pin_was_removed(
+async def test_audit_names_the_units_of_a_removed_pin(
     station: DeskStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -94,7 +94,7 @@ async def test_the_audit_says_whose_pin_was_removed(
     ]
 
 
-async def test_what_a_move_leaves_out_stays_as_it_was_stated(
+async def test_moved_pin_keeps_its_omitted_fields(
     station: DeskStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -169,7 +169,7 @@ async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> Non
         ({"unknown": 1}, 422, "unknown"),
     ],
 )
-async def test_a_bad_pin_is_refused_with_a_sentence(
+async def test_invalid_pin_is_refused_with_a_reason(
     station: DeskStation,
     clock: ManualClock,
     make_position: object,
@@ -186,7 +186,7 @@ async def test_a_bad_pin_is_refused_with_a_sentence(
         assert (await commander.get("/pins")).json() == []
 
 
-async def test_a_viewer_sees_pins_and_sets_none(station: DeskStation) -> None:
+async def test_viewer_reads_pins_and_sets_none(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.get("/pins")).status_code == 200
         body = {"unit_id": "FF-01", "north_m": 0.0, "east_m": 0.0}

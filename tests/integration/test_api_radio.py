@@ -67,7 +67,7 @@ async def test_spans_of_recording_and_voice_are_listed_by_channel(station: DeskS
         assert (await viewer.get("/incidents/none/radio")).status_code == 404
 
 
-async def test_a_window_is_given_in_ranges_and_the_audit_names_the_listener(
+async def test_audio_is_served_in_ranges_and_the_audit_names_the_listener(
     station: DeskStation,
 ) -> None:
     window = {"from_ms": OPENED_MS + 5_000, "length_ms": 20_000}
@@ -122,7 +122,7 @@ async def test_a_window_is_given_in_ranges_and_the_audit_names_the_listener(
         ("a.b", 0, 10, 422, "channel"),
     ],
 )
-async def test_what_makes_no_sense_is_refused_in_words(
+async def test_invalid_request_is_refused_with_a_reason(
     station: DeskStation, channel: str, from_s: int, length_s: int, status: int, words: str
 ) -> None:
     window = {"from_ms": OPENED_MS + from_s * 1_000, "length_ms": length_s * 1_000}
@@ -132,7 +132,7 @@ async def test_what_makes_no_sense_is_refused_in_words(
         assert words in refused.text
 
 
-async def test_an_incident_as_a_file_has_audio_for_whom_may_receive_it(
+async def test_exported_incident_has_audio_for_permitted_users_only(
     station: DeskStation,
 ) -> None:
     address = "/incidents/i-1/incident.mcap"

@@ -38,7 +38,7 @@ async def pulls(client: httpx.AsyncClient) -> list[dict[str, object]]:
     return listed
 
 
-async def test_a_commander_pulls_one_sees_it_wait_and_stops_it(station: DeskStation) -> None:
+async def test_commander_starts_reads_and_stops_a_transfer(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         asked = await client.post("/recordings", json=WINDOW)
         assert asked.status_code == 202
@@ -57,7 +57,7 @@ async def test_a_commander_pulls_one_sees_it_wait_and_stops_it(station: DeskStat
     assert ("commander", "StoppedRecording") in done
 
 
-async def test_a_viewer_only_looks_on(station: DeskStation) -> None:
+async def test_viewer_reads_transfers_and_starts_none(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as client:
         assert await pulls(client) == []
         assert (await client.post("/recordings", json=WINDOW)).status_code == 403
@@ -75,7 +75,7 @@ async def test_a_viewer_only_looks_on(station: DeskStation) -> None:
         (WINDOW | {"unit_id": "../x"}, 422, ""),
     ],
 )
-async def test_what_makes_no_sense_is_refused_in_words(
+async def test_invalid_request_is_refused_with_a_reason(
     station: DeskStation, form: dict[str, object], code: int, reported: str
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
@@ -84,7 +84,7 @@ async def test_what_makes_no_sense_is_refused_in_words(
     assert reported in answer.text
 
 
-async def test_one_pull_a_unit_at_a_time(station: DeskStation) -> None:
+async def test_second_transfer_of_a_unit_is_refused(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         assert (await client.post("/recordings", json=WINDOW)).status_code == 202
         again = await client.post("/recordings", json=WINDOW)

@@ -33,7 +33,7 @@ def begun_by(replays: Replays, user: str) -> tuple[str, NotedReplay]:
     return f"/replays/{opened.replay_id}", opened.player
 
 
-async def test_a_viewer_moves_and_ends_only_the_own_replay(
+async def test_viewer_controls_and_ends_only_the_own_replay(
     station: DeskStation, replays: Replays
 ) -> None:
     own, own_player = begun_by(replays, "viewer")
@@ -56,7 +56,7 @@ async def test_a_viewer_moves_and_ends_only_the_own_replay(
 
 
 @pytest.mark.parametrize("role", [Role.COMMANDER, Role.ADMINISTRATOR])
-async def test_a_commander_ends_any_replay_by_name_and_moves_none_of_others(
+async def test_commander_ends_any_replay_and_controls_only_the_own(
     station: DeskStation, replays: Replays, role: Role
 ) -> None:
     others, player = begun_by(replays, "viewer")
@@ -70,7 +70,7 @@ async def test_a_commander_ends_any_replay_by_name_and_moves_none_of_others(
 
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.ADMINISTRATOR])
-async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_nobody(
+async def test_replay_of_a_replay_station_is_shared_and_cannot_be_ended(
     station: DeskStation, replays: Replays, role: Role
 ) -> None:
     """There is nothing behind it: the console would show a picture that stands."""
@@ -84,7 +84,9 @@ async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_no
     assert not player.closed
 
 
-async def test_a_replay_is_of_who_begins_it(station: DeskStation, replays: Replays) -> None:
+async def test_replay_belongs_to_the_user_who_starts_it(
+    station: DeskStation, replays: Replays
+) -> None:
     station.app.state.loop = asyncio.get_running_loop()
     async with station.client(Role.COMMANDER) as commander:
         incident = (await commander.post("/incidents", json={"name": "Fire"})).json()

@@ -51,7 +51,7 @@ async def commander(
         yield commander
 
 
-async def test_the_three_nearest_and_any_other_that_is_named(
+async def test_routes_are_of_the_three_nearest_and_any_named_rescuer(
     commander: httpx.AsyncClient,
 ) -> None:
     nearest = (await commander.get("/units/FF-01/routes")).json()
@@ -68,7 +68,7 @@ async def test_the_three_nearest_and_any_other_that_is_named(
     assert named[0]["distance_m"] == pytest.approx(40, abs=2)
 
 
-async def test_who_is_in_danger_is_not_sent(
+async def test_endangered_member_is_no_rescuer(
     commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
 ) -> None:
     clock.advance(1.0)
@@ -78,7 +78,7 @@ async def test_who_is_in_danger_is_not_sent(
     assert [route["unit_id"] for route in nearest] == ["FF-03", "FF-04", "FF-05"]
 
 
-async def test_without_a_known_way_the_straight_line_is_named_as_such(
+async def test_route_without_a_known_way_is_marked_as_a_straight_line(
     commander: httpx.AsyncClient,
     station: DeskStation,
     clock: ManualClock,
@@ -100,7 +100,9 @@ async def test_without_a_known_way_the_straight_line_is_named_as_such(
     assert answer["legs"] == []
 
 
-async def test_unknown_units_and_units_without_a_position(commander: httpx.AsyncClient) -> None:
+async def test_unknown_unit_and_unit_without_position_are_refused(
+    commander: httpx.AsyncClient,
+) -> None:
     assert (await commander.get("/units/FF-09/routes")).status_code == 404
     assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-09")).status_code == 404
     await commander.post("/units", json={"unit_id": "FF-08"})
@@ -113,7 +115,7 @@ async def test_unknown_units_and_units_without_a_position(commander: httpx.Async
     assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-08")).status_code == 409
 
 
-async def test_pieces_of_the_way_are_sent_as_the_rescuer_advances(
+async def test_legs_of_the_route_are_sent_as_the_rescuer_advances(
     commander: httpx.AsyncClient,
     station: DeskStation,
     clock: ManualClock,
@@ -152,7 +154,7 @@ async def test_pieces_of_the_way_are_sent_as_the_rescuer_advances(
     assert (await commander.delete("/guides/FF-02")).status_code == 404
 
 
-async def test_guidance_is_over_with_the_alarms_of_the_member(
+async def test_guidance_ends_with_the_alarms_of_the_member(
     commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
 ) -> None:
     clock.advance(1.0)

@@ -168,7 +168,7 @@ def test_the_tables_name_every_route_and_socket() -> None:
     } == SOCKETS
 
 
-async def test_each_route_is_for_its_role_and_those_above_alone(station: DeskStation) -> None:
+async def test_each_route_requires_its_role(station: DeskStation) -> None:
     for role in (None, *Role):
         async with station.client(role) as client:
             for route, least in (one for routes in LEAST.values() for one in routes.items()):
@@ -200,7 +200,7 @@ async def test_a_token_for_another_part_opens_no_route(station: DeskStation) -> 
                     assert "This token is for" in answer.json()["detail"], route
 
 
-async def test_another_sites_page_changes_nothing_by_any_route(station: DeskStation) -> None:
+async def test_page_of_another_origin_changes_nothing_by_any_route(station: DeskStation) -> None:
     async with station.client() as browser:
         browser.headers["origin"] = ORIGIN
         credentials = {"username": "administrator", "password": PASSWORD}
@@ -231,7 +231,7 @@ async def test_a_standby_changes_nothing_by_any_route(
             assert refused == (route not in WITHOUT_CHANGES), route
 
 
-async def test_a_station_that_only_replays_takes_nothing_that_would_be_lost(
+async def test_replay_station_refuses_changes_by_any_route(
     station: DeskStation,
 ) -> None:
     services = dataclasses.replace(station.services, is_replay_only=True)
@@ -276,7 +276,7 @@ class Story:
         return [entry.by for entry in sorted(entries, key=lambda one: one.number)]
 
 
-async def test_whatever_changes_something_is_in_the_audit(
+async def test_every_changing_route_is_in_the_audit(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client() as client:

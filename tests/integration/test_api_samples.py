@@ -84,7 +84,7 @@ def published(received: Heard) -> list[RawImu]:
     return [message for message in messages if isinstance(message, RawImu)]
 
 
-async def test_posted_samples_are_taken_and_go_onto_the_bus(
+async def test_posted_samples_are_published_on_the_bus(
     station: DeskStation, node: httpx.AsyncClient, received: Heard
 ) -> None:
     answer = await node.post(PATH, json=body(batch(1), batch(2)))
@@ -109,7 +109,7 @@ async def test_a_batch_that_is_sent_again_is_kept_once(node: httpx.AsyncClient) 
     assert other_run.json()["accepted"] == 1
 
 
-async def test_messages_of_the_bus_are_taken_as_they_are(
+async def test_messages_of_the_bus_are_published_unchanged(
     node: httpx.AsyncClient, received: Heard
 ) -> None:
     sent = [raw(1), raw(2)]
@@ -118,7 +118,7 @@ async def test_messages_of_the_bus_are_taken_as_they_are(
     assert [encode(one) for one in published(received)] == [encode(one) for one in sent]
 
 
-async def test_a_missed_value_and_further_sensors_arrive(
+async def test_missing_value_and_further_sensors_are_forwarded(
     node: httpx.AsyncClient, received: Heard
 ) -> None:
     sent = batch(
@@ -151,7 +151,7 @@ async def test_a_missed_value_and_further_sensors_arrive(
         (batch(1, 2, colour="red"), "colour is not known here"),
     ],
 )
-async def test_samples_that_make_no_sense_are_refused_in_words(
+async def test_invalid_samples_are_refused_with_a_reason(
     node: httpx.AsyncClient, received: Heard, wrong: dict[str, Any], sentence: str
 ) -> None:
     answer = await node.post(PATH, json=body(wrong))
@@ -173,7 +173,7 @@ async def test_samples_that_make_no_sense_are_refused_in_words(
         (delimited([raw(1, count=MAX_SAMPLES + 1)]), f"{MAX_SAMPLES} at most"),
     ],
 )
-async def test_messages_that_make_no_sense_are_refused_in_words(
+async def test_invalid_messages_are_refused_with_a_reason(
     node: httpx.AsyncClient, content: bytes, sentence: str
 ) -> None:
     answer = await node.post(PATH, content=content, headers=PROTOBUF)
@@ -181,7 +181,7 @@ async def test_messages_that_make_no_sense_are_refused_in_words(
     assert sentence in answer.json()["detail"]
 
 
-async def test_a_body_of_another_kind_and_one_that_is_too_large_are_refused(
+async def test_body_of_another_type_or_too_large_is_refused(
     node: httpx.AsyncClient,
 ) -> None:
     other = await node.post(PATH, content=b"t,x,y", headers={"Content-Type": "text/csv"})
@@ -194,7 +194,7 @@ async def test_a_body_of_another_kind_and_one_that_is_too_large_are_refused(
     assert "samples 1 MB" in large.json()["detail"]
 
 
-async def test_who_posts_more_than_a_unit_may_is_asked_to_wait(
+async def test_excess_of_the_rate_limit_is_refused_with_a_wait(
     node: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     content = b"\x05" * (MAX_SAMPLES_BYTES - 1)
@@ -207,7 +207,7 @@ async def test_who_posts_more_than_a_unit_may_is_asked_to_wait(
     assert (await node.post(PATH, content=content, headers=PROTOBUF)).status_code == 422
 
 
-async def test_the_token_of_a_unit_is_for_its_samples_alone(
+async def test_token_of_a_unit_is_limited_to_its_samples(
     station: DeskStation, node: httpx.AsyncClient, browser: httpx.AsyncClient
 ) -> None:
     await browser.post("/units", json={"unit_id": "FF-02"})
@@ -238,7 +238,7 @@ async def test_a_token_is_listed_without_its_secret_and_ends_when_it_is_removed(
     assert (await node.post(PATH, json=body(batch(2)))).status_code == 401
 
 
-async def test_a_token_outlives_its_makers_password_but_not_its_time_and_its_maker(
+async def test_token_survives_its_makers_password_but_not_its_expiry_or_maker(
     station: DeskStation, node: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     accounts = station.services.accounts
@@ -253,7 +253,7 @@ async def test_a_token_outlives_its_makers_password_but_not_its_time_and_its_mak
     assert (await node.post(PATH, json=body(batch(2)))).status_code == 401
 
 
-async def test_a_unit_has_only_so_many_tokens_and_none_before_it_is_registered(
+async def test_tokens_of_a_unit_are_limited_and_need_its_registration(
     station: DeskStation, node: httpx.AsyncClient
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
@@ -266,7 +266,9 @@ async def test_a_unit_has_only_so_many_tokens_and_none_before_it_is_registered(
         assert (await administrator.post("/units/FF-09/samples", json={})).status_code == 404
 
 
-async def test_a_node_that_starts_again_and_again_is_reported_so(node: httpx.AsyncClient) -> None:
+async def test_node_with_changing_boot_ids_is_refused_with_a_reason(
+    node: httpx.AsyncClient,
+) -> None:
     for boot_id in range(1, 17):
         answer = await node.post(PATH, json=body(batch(1), boot_id=boot_id))
         assert answer.status_code == 200

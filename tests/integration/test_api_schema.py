@@ -66,7 +66,7 @@ def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str
     desk.close()
 
 
-def test_the_document_is_kept(station: tuple[str, str]) -> None:
+def test_responses_follow_the_api_document(station: tuple[str, str]) -> None:
     address, token = station
     document = schemathesis.openapi.from_url(f"{address}/api/v1/openapi.json")
     operations = [one.ok() for one in document.get_all_operations() if isinstance(one, Ok)]

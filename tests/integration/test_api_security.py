@@ -57,7 +57,7 @@ async def test_a_role_is_enforced(
             assert answer.status_code not in (401, 403)
 
 
-async def test_every_route_but_the_login_wants_a_login(station: DeskStation) -> None:
+async def test_every_route_except_the_login_requires_a_login(station: DeskStation) -> None:
     async with station.client() as client:
         document = (await client.get("/openapi.json")).json()
         open_paths = set()
@@ -79,7 +79,7 @@ async def test_every_route_but_the_login_wants_a_login(station: DeskStation) -> 
     }
 
 
-async def test_the_cookie_is_for_the_station_alone(station: DeskStation) -> None:
+async def test_cookie_is_restricted_to_the_station(station: DeskStation) -> None:
     async with station.client() as client:
         answer = await client.post(
             "/login", json={"username": "viewer", "password": PASSWORD}, headers={"origin": ORIGIN}
@@ -95,7 +95,7 @@ async def test_the_cookie_is_for_the_station_alone(station: DeskStation) -> None
     assert "secure" in answer.headers["set-cookie"].lower()
 
 
-async def test_who_logs_in_and_who_is_refused_is_in_the_audit_with_the_place(
+async def test_logins_and_refusals_are_in_the_audit_with_the_address(
     station: DeskStation,
 ) -> None:
     async with station.client() as client:
@@ -107,7 +107,7 @@ async def test_who_logs_in_and_who_is_refused_is_in_the_audit_with_the_place(
     ]  # fmt: skip
 
 
-async def test_another_site_changes_nothing(browser: httpx.AsyncClient) -> None:
+async def test_request_of_another_origin_changes_nothing(browser: httpx.AsyncClient) -> None:
     for origin in ("http://evil.example", "null", "http://station.evil.example"):
         answer = await browser.post("/incidents", json={"name": "x"}, headers={"origin": origin})
         assert answer.status_code == 403
@@ -116,7 +116,7 @@ async def test_another_site_changes_nothing(browser: httpx.AsyncClient) -> None:
     assert (await browser.get("/incidents")).json() == []
 
 
-async def test_a_cookie_changes_nothing_without_an_origin_but_beside_a_token(
+async def test_cookie_without_an_origin_changes_nothing_unless_with_a_token(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
@@ -132,7 +132,7 @@ async def test_a_cookie_changes_nothing_without_an_origin_but_beside_a_token(
     assert (await browser.get("/me")).status_code == 401  # and the cookie is good
 
 
-async def test_a_session_ends(browser: httpx.AsyncClient, clock: ManualClock) -> None:
+async def test_session_expires(browser: httpx.AsyncClient, clock: ManualClock) -> None:
     me = (await browser.get("/me")).json()
     assert me == {"username": "commander", "role": "commander", "must_change_password": False}
     clock.advance(SESSION_S - 1.0)
@@ -158,7 +158,7 @@ async def test_secrets_are_not_in_the_database(browser: httpx.AsyncClient, tmp_p
     assert not any(secret in dump for secret in secrets)
 
 
-async def test_what_is_over_is_not_kept(
+async def test_expired_sessions_and_tickets_are_deleted(
     station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
 ) -> None:
     def kept() -> list[int]:
@@ -191,7 +191,7 @@ async def test_security_headers_are_on_every_answer(station: DeskStation) -> Non
         assert (await client.get("/me")).headers["cache-control"] == "no-store"
 
 
-async def test_over_tls_browsers_are_ordered_to_stay_with_it(station: DeskStation) -> None:
+async def test_tls_answers_have_strict_transport_security(station: DeskStation) -> None:
     services = dataclasses.replace(station.services, secure=True)
     app = create_app(services, started=lambda _: None)
     transport = httpx.ASGITransport(app)
@@ -200,7 +200,7 @@ async def test_over_tls_browsers_are_ordered_to_stay_with_it(station: DeskStatio
     assert answer.headers["strict-transport-security"] == "max-age=31536000"
 
 
-async def test_a_login_ends_the_one_before_it_in_the_same_browser(
+async def test_login_ends_the_previous_session_of_the_browser(
     browser: httpx.AsyncClient,
 ) -> None:
     before = browser.cookies[COOKIE]
@@ -213,7 +213,7 @@ async def test_a_login_ends_the_one_before_it_in_the_same_browser(
     assert (await browser.get("/me", headers=shown(before))).status_code == 401
 
 
-async def test_over_tls_a_page_that_came_in_the_clear_changes_nothing(
+async def test_page_of_a_plain_origin_changes_nothing_over_tls(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     station.app.state.services = dataclasses.replace(station.services, secure=True)
@@ -222,14 +222,14 @@ async def test_over_tls_a_page_that_came_in_the_clear_changes_nothing(
     assert (await browser.post("/logout", headers=ours)).status_code == 204
 
 
-async def test_behind_a_proxy_that_serves_tls_the_stations_own_page_changes_things(
+async def test_own_page_behind_a_tls_proxy_is_accepted(
     browser: httpx.AsyncClient,
 ) -> None:
     ours = {"origin": ORIGIN.replace("http:", "https:")}
     assert (await browser.post("/logout", headers=ours)).status_code == 204
 
 
-async def test_a_login_goes_on_at_the_other_station_with_a_ticket_and_once(
+async def test_login_is_transferred_to_the_other_station_by_a_single_use_ticket(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     ticket = (await browser.post("/hand-over")).json()["ticket"]

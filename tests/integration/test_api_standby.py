@@ -40,7 +40,7 @@ def ha_status(station: DeskStation) -> HaStatus:
 
 
 @pytest.mark.usefixtures("ha_status")
-async def test_a_standby_is_looked_at_and_refuses_changes_in_a_sentence(
+async def test_standby_is_readable_and_refuses_changes_with_a_reason(
     station: DeskStation,
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -59,16 +59,14 @@ async def test_people_log_in_at_a_standby(station: DeskStation) -> None:
     assert answer.status_code == 401  # asked for, and the password is wrong
 
 
-async def test_a_commander_makes_it_lead_and_a_viewer_does_not(
-    station: DeskStation, ha_status: HaStatus
-) -> None:
+async def test_takeover_is_for_commanders_only(station: DeskStation, ha_status: HaStatus) -> None:
     for role, status in ((Role.VIEWER, 403), (Role.COMMANDER, 202)):
         async with station.client(role) as client:
             assert (await client.post("/standby/take-over")).status_code == status
     assert ha_status.taken_over == 1
 
 
-async def test_the_other_stations_console_may_ask_whether_this_one_leads(
+async def test_console_of_the_other_station_can_query_the_leader(
     station: DeskStation, ha_status: HaStatus
 ) -> None:
     async with station.client() as client:
@@ -79,7 +77,7 @@ async def test_the_other_stations_console_may_ask_whether_this_one_leads(
         assert (await client.get("/standby/leads")).json() == {"leads": True}
 
 
-async def test_the_only_station_has_no_other(station: DeskStation) -> None:
+async def test_single_station_has_no_standby_status(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         assert (await client.get("/standby")).status_code == 404
 
@@ -93,5 +91,5 @@ async def test_the_only_station_has_no_other(station: DeskStation) -> None:
         ("javascript:alert(1)", "connect-src 'self';"),
     ],
 )
-def test_the_page_may_ask_the_other_station_and_nobody_else(other: str, allowed: str) -> None:
+def test_content_policy_allows_the_other_station_only(other: str, allowed: str) -> None:
     assert allowed in content_policy(other)

@@ -93,7 +93,7 @@ def points(column: dict[str, Any]) -> list[tuple[float, float | None]]:
 
 
 @pytest.mark.asyncio
-async def test_columns_have_what_was_measured_and_stated(station: DeskStation) -> None:
+async def test_columns_contain_measured_and_reported_values(station: DeskStation) -> None:
     answer = await timeline(station, "FF-03")
     hot = [t_s for t_s, degc in points(answer["temperature_degc"]) if degc == HOT_DEGC]
     assert HOT_FROM_S <= hot[0] <= HOT_FROM_S + 4
@@ -127,7 +127,7 @@ async def test_a_radio_gap_is_a_gap_of_the_columns(station: DeskStation) -> None
 
 
 @pytest.mark.asyncio
-async def test_bounds_unknown_units_and_empty_spans(station: DeskStation) -> None:
+async def test_timeline_refuses_unknown_units_and_limits_its_span(station: DeskStation) -> None:
     status, detail = await refusal(station, "FF-99")
     assert (status, "no unit FF-99" in detail) == (404, True)
     longest = await timeline(station, "FF-01", from_ms=0)
@@ -141,7 +141,7 @@ async def test_bounds_unknown_units_and_empty_spans(station: DeskStation) -> Non
     assert ahead["radio_gaps_ms"][-1][1] == ahead["until_ms"]
 
 
-def test_a_station_reads_the_same_in_a_process_of_its_own(
+def test_separate_process_reads_the_same_timeline(
     folder: DataFolder, store: Store, tmp_path: Path
 ) -> None:
     request = TimelineRequest("FF-02", Window(START_NS, START_NS + 300 * NS_PER_S), 100)

@@ -14,7 +14,7 @@ from shared.errors import UserError
 from tests.rig.desk_station import DeskStation
 
 
-async def test_a_token_may_do_no_more_than_its_maker(
+async def test_token_has_no_more_rights_than_its_maker(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     higher = {"name": "t", "role": "administrator"}
@@ -28,7 +28,7 @@ async def test_a_token_may_do_no_more_than_its_maker(
         assert (await program.get("/me")).status_code == 401
 
 
-async def test_a_token_is_its_owners_to_see_and_to_remove(
+async def test_token_is_listed_and_removed_by_its_owner_only(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
@@ -40,7 +40,7 @@ async def test_a_token_is_its_owners_to_see_and_to_remove(
     assert [one["token_id"] for one in (await browser.get("/tokens")).json()] == [made["token_id"]]
 
 
-def test_a_user_has_only_so_many_tokens_and_those_that_have_ended_go(
+def test_tokens_of_a_user_are_limited_and_expired_ones_removed(
     station: DeskStation, clock: ManualClock
 ) -> None:
     accounts = station.services.accounts
@@ -57,7 +57,7 @@ def test_a_user_has_only_so_many_tokens_and_those_that_have_ended_go(
     assert "t7" not in names
 
 
-async def test_a_token_reaches_only_what_it_is_for(
+async def test_token_is_limited_to_its_scope(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     wanted = {"name": "dispatch", "role": "commander", "scopes": ["incidents", "tokens"]}
@@ -77,7 +77,7 @@ async def test_a_token_reaches_only_what_it_is_for(
         assert (await program.post("/tokens", json=narrower)).status_code == 201
 
 
-async def test_a_token_makes_none_that_outlasts_it(
+async def test_token_creates_none_that_outlasts_it(
     station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     lent = {"name": "lent", "role": "viewer", "days": 2}

@@ -82,7 +82,7 @@ async def worked(
 
 
 @pytest.mark.parametrize("closed", [True, False])
-async def test_raw_shown_and_smoothed_stand_side_by_side(
+async def test_raw_shown_and_smoothed_trails_are_served(
     station: DeskStation, clock: ManualClock, make_position, closed: bool
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=closed)
@@ -104,7 +104,7 @@ async def test_raw_shown_and_smoothed_stand_side_by_side(
         assert len(few.json()["trails"][0]["points"]) <= 4
 
 
-async def test_an_assessment_and_an_export_of_the_smoothed_trail(
+async def test_smoothed_trail_is_assessed_and_exported(
     station: DeskStation, clock: ManualClock, make_position
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=True)
@@ -124,7 +124,7 @@ async def test_an_assessment_and_an_export_of_the_smoothed_trail(
         assert files[0].content != files[1].content
 
 
-async def test_an_incident_in_which_nobody_was_received_yet_has_no_trails(
+async def test_incident_without_received_units_has_no_trails(
     station: DeskStation,
 ) -> None:
     """And pins that wait: the smoother is not asked about nobody."""
@@ -143,7 +143,7 @@ async def test_an_incident_in_which_nobody_was_received_yet_has_no_trails(
         assert report.json()["units"] == []
 
 
-async def test_what_cannot_be_is_stated(station: DeskStation) -> None:
+async def test_invalid_request_is_refused_with_a_reason(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         for path in ("trails", "assessment"):
             assert (await viewer.get(f"/incidents/none/{path}")).status_code == 404
@@ -151,7 +151,7 @@ async def test_what_cannot_be_is_stated(station: DeskStation) -> None:
         assert odd.status_code == 422
 
 
-async def test_a_station_without_a_log_says_so(tmp_path: Path, clock: ManualClock) -> None:
+async def test_station_without_a_log_refuses_trails(tmp_path: Path, clock: ManualClock) -> None:
     station = DeskStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     async with station.client(Role.COMMANDER) as commander:
@@ -163,7 +163,7 @@ async def test_a_station_without_a_log_says_so(tmp_path: Path, clock: ManualCloc
     station.close()
 
 
-async def test_what_came_since_is_reported_until_it_is_worked_out(
+async def test_result_is_marked_as_outdated_until_recomputed(
     station: DeskStation, clock: ManualClock, make_position
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=True)
@@ -189,7 +189,7 @@ async def test_what_came_since_is_reported_until_it_is_worked_out(
         assert again != first
 
 
-async def test_a_file_says_which_trails_it_has(
+async def test_exported_file_names_its_kind_of_trail(
     station: DeskStation, clock: ManualClock, make_position
 ) -> None:
     """Saved beside each other, days later they cannot be told apart otherwise."""

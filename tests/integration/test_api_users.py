@@ -33,7 +33,7 @@ async def test_every_user_that_can_be_made_can_log_in_and_be_removed(
 @pytest.mark.parametrize(
     "username", ["", " ", "day/night", ".", "..", "a\nb", "a\x7fb", "a\u202eb", "x" * 81, "\udcff"]
 )
-def test_nobody_is_made_whom_no_login_and_no_address_can_name(
+def test_user_name_unusable_for_login_or_address_is_refused(
     station: DeskStation, username: str
 ) -> None:
     accounts = station.services.accounts
@@ -41,7 +41,7 @@ def test_nobody_is_made_whom_no_login_and_no_address_can_name(
         accounts.add_user(username, PASSWORD, Role.VIEWER)
 
 
-def test_no_password_is_kept_that_no_login_takes(station: DeskStation) -> None:
+def test_password_unusable_for_login_is_refused(station: DeskStation) -> None:
     accounts = station.services.accounts
     accounts.change_user("viewer", "x" * 256, None)
     assert accounts.log_in("viewer", "x" * 256) is not None
@@ -61,7 +61,7 @@ async def test_an_administrator_ends_sessions(
     assert (await browser.get("/me")).status_code == 401
 
 
-async def test_the_only_administrator_stays_one(station: DeskStation) -> None:
+async def test_only_administrator_cannot_be_removed(station: DeskStation) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         path = "/users/administrator"
         lower = await administrator.put(path, json={"role": "commander"})
@@ -77,7 +77,7 @@ async def test_the_only_administrator_stays_one(station: DeskStation) -> None:
         assert users["administrator"] == "commander"
 
 
-async def test_a_new_password_ends_the_logins_elsewhere(
+async def test_new_password_ends_other_sessions(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     async with station.client() as elsewhere:
@@ -94,7 +94,7 @@ async def test_a_new_password_ends_the_logins_elsewhere(
         assert (await browser.get("/me")).status_code == 401
 
 
-async def test_a_new_password_ends_the_tokens_and_another_role_does_not(
+async def test_new_password_ends_the_tokens_and_a_new_role_does_not(
     station: DeskStation,
 ) -> None:
     async with (
@@ -111,7 +111,7 @@ async def test_a_new_password_ends_the_tokens_and_another_role_does_not(
         assert (await other.get("/me")).status_code == 200
 
 
-async def test_another_role_ends_the_logins_and_binds_the_tokens(
+async def test_new_role_ends_sessions_and_limits_tokens(
     station: DeskStation, browser: httpx.AsyncClient
 ) -> None:
     token = (await browser.post("/tokens", json={"name": "t", "role": "commander"})).json()["token"]

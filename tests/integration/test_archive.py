@@ -126,7 +126,7 @@ def refusal(*arguments: str | Path) -> str:
 
 
 @pytest.mark.slow
-def test_a_bucket_has_what_the_station_has(
+def test_bucket_contains_the_incidents_of_the_station(
     data: Path, ask_as: Callable[[str], None], tmp_path: Path
 ) -> None:
     address = f"{ADDRESS}-whole"
@@ -163,7 +163,7 @@ def test_a_bucket_has_what_the_station_has(
 
 
 @pytest.mark.slow
-def test_any_second_is_shown_as_by_the_station_with_few_requests(
+def test_archived_incident_replays_identically_with_few_requests(
     data: Path, ask_as: Callable[[str], None]
 ) -> None:
     address = f"{ADDRESS}-shown"
@@ -188,7 +188,7 @@ def test_any_second_is_shown_as_by_the_station_with_few_requests(
 
 
 @pytest.mark.slow
-def test_a_bucket_without_rights_is_named_and_takes_nothing(
+def test_bucket_without_rights_is_reported(
     data: Path, ask_as: Callable[[str], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     address = f"{ADDRESS}-rights"
@@ -222,7 +222,7 @@ def note_segments(store: Store, log: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_copy_is_not_replaced_by_less_where_the_log_is_gone(data: Path, tmp_path: Path) -> None:
+def test_complete_copy_is_not_replaced_after_loss_of_the_log(data: Path, tmp_path: Path) -> None:
     archive = tmp_path / "archive"
     succeeded("archive", "copy", archive, "--data", data)
     before = {path: path.read_bytes() for path in (archive / "i1").iterdir()}
@@ -242,7 +242,7 @@ def test_a_copy_is_not_replaced_by_less_where_the_log_is_gone(data: Path, tmp_pa
 
 
 @pytest.mark.slow
-def test_a_bucket_that_goes_away_loses_nothing(
+def test_unreachable_bucket_loses_nothing(
     data: Path, server: BucketServer, ask_as: Callable[[str], None]
 ) -> None:
     address = f"{ADDRESS}-away"
@@ -263,7 +263,7 @@ def test_a_bucket_that_goes_away_loses_nothing(
 
 
 @pytest.mark.slow
-def test_a_station_archives_by_itself_and_shows_what_it_has_no_log_of(
+def test_station_archives_automatically_and_shows_incidents_without_log(
     data: Path, server: BucketServer, ask_as: Callable[[str], None], serve: Callable[..., Command],
     tmp_path: Path,
 ) -> None:  # fmt: skip
@@ -303,7 +303,7 @@ def test_a_station_archives_by_itself_and_shows_what_it_has_no_log_of(
 
 
 @pytest.mark.slow
-def test_what_is_asked_about_an_incident_without_its_log_comes_out_of_the_bucket(
+def test_queries_about_an_incident_without_log_are_answered_from_the_bucket(
     data: Path, server: BucketServer, ask_as: Callable[[str], None], serve: Callable[..., Command],
     tmp_path: Path,
 ) -> None:  # fmt: skip
@@ -421,7 +421,7 @@ def moved_to(browser: Browser, path: str, at_ms: int) -> dict[str, Any]:
     return view
 
 
-def test_a_disk_s_copy_that_is_torn_is_found_and_made_again(data: Path, tmp_path: Path) -> None:
+def test_damaged_copy_is_detected_and_replaced(data: Path, tmp_path: Path) -> None:
     disk = tmp_path / "disk"
     succeeded("archive", "copy", disk, "--data", data)
     assert ": 0 defects" in succeeded("archive", "verify", disk)
@@ -450,9 +450,7 @@ def test_a_disk_s_copy_that_is_torn_is_found_and_made_again(data: Path, tmp_path
     assert "see that the disk is there" in refusal("archive", "list", tmp_path / "none")
 
 
-def test_anyone_is_forgotten_is_gone_from_the_copy_with_the_next_one(
-    data: Path, tmp_path: Path
-) -> None:
+def test_erased_person_is_removed_from_the_next_copy(data: Path, tmp_path: Path) -> None:
     records = list(LogFeed(data / "log").records())
     script = Script()
     script.now_s = (records[-1][0] - START_NS) / NS_PER_S + 1.0
@@ -473,7 +471,7 @@ def test_anyone_is_forgotten_is_gone_from_the_copy_with_the_next_one(
 
 
 @pytest.mark.slow
-def test_a_department_opens_past_incidents_and_one_more_than_fits_ends_the_oldest(
+def test_department_replays_archived_incidents_and_ends_the_oldest(
     data: Path, tmp_path: Path
 ) -> None:
     archive = tmp_path / "archive"

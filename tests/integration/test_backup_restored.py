@@ -10,7 +10,7 @@ from tests.rig.served_station import MakePosition, greet, prepare, snapshot, tra
 from tests.rig.station_command import Browser, Command, Unit
 
 
-def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(
+def test_station_continues_from_a_backup_made_while_running(
     serve: Callable[..., Command],
     tmp_path: Path,
     data: Path,

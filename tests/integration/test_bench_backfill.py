@@ -7,7 +7,7 @@ from rich.progress import Progress
 from tests.bench.backfill import measure
 
 
-def test_a_short_backlog_arrives_whole() -> None:
+def test_short_backlog_arrives_completely() -> None:
     with Progress(disable=True) as progress:
         report = measure(backlog=500, units=2, seconds=1.0, progress=progress, plain=True)
     assert (report.lost, report.repeated) == (0, 0)

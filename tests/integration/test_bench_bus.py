@@ -30,7 +30,7 @@ def test_a_shown_position_is_that_of_the_nearest_sensor_time() -> None:
     assert latencies_ms(sent, shown) == [50.0, 50.0]
 
 
-def test_many_consoles_and_slow_ones_cost_nobody_a_message() -> None:
+def test_many_and_slow_consoles_lose_no_message() -> None:
     with Progress(disable=True) as progress:
         report = measure(Load(3, 7.0, 3.0, consoles=1, onlookers=200, slow=5), progress)
     assert (report.lost, report.stepped) == (0, report.sent)

@@ -22,7 +22,7 @@ def test_an_agent_is_measured_while_it_takes_every_sample() -> None:
     assert row.longest_gap_ms == pytest.approx(2.5, abs=0.01)
 
 
-def test_a_whole_unit_is_measured_with_its_temperatures(tmp_path_factory) -> None:
+def test_complete_unit_is_measured_with_its_temperatures(tmp_path_factory) -> None:
     compile_trackers()
     machine = tmp_path_factory.mktemp("m", numbered=True)
     figures = measure_whole_unit(1.0, 2, machine, raw_walk())

@@ -14,7 +14,7 @@ from tests.rig.accelerated_station import compressed_station
 from tests.rig.simulated_units import unit_names
 
 
-def test_what_wearers_say_in_compressed_time_is_in_the_log(tmp_path: Path) -> None:
+def test_messages_in_compressed_time_are_in_the_log(tmp_path: Path) -> None:
     with compressed_station(tmp_path, unit_names(5), 7.0, consoles=1) as station:
         station.run(3.0)
         assert station.messages == 5 * 7 * 3
@@ -26,7 +26,7 @@ def test_what_wearers_say_in_compressed_time_is_in_the_log(tmp_path: Path) -> No
     assert keys.count(FUSED.key(STATION_ID)) == positions > 0
 
 
-def test_a_short_run_tells_each_parts_share() -> None:
+def test_short_run_reports_the_share_of_each_part() -> None:
     with Progress(disable=True) as progress:
         report = measure(units=5, rate_hz=7.0, minutes=0.05, consoles=1, progress=progress)
     assert report.messages == 5 * 7 * 3

@@ -43,7 +43,7 @@ def site(tmp_path: Path) -> Iterator[Site]:
         yield Site(tmp_path, stack)
 
 
-def test_an_enrolled_unit_speaks_lives_receives_its_commands_and_answers(site: Site) -> None:
+def test_enrolled_unit_publishes_is_alive_receives_commands_and_answers(site: Site) -> None:
     enrolment = site.pki.enroll("anna")
     site.open()
     unit = site.unit(enrolment)
@@ -68,7 +68,7 @@ def test_an_enrolled_unit_speaks_lives_receives_its_commands_and_answers(site: S
     until(lambda: site.alive == set(), "the end of the token")
 
 
-def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
+def test_unit_cannot_act_under_another_name(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     unit, other = site.unit(anna), site.unit(bert)
@@ -110,7 +110,7 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     token.close()
 
 
-def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> None:
+def test_wildcards_deletes_and_admin_keys_are_refused(site: Site) -> None:
     """As whoever has taken a unit apart and writes a program of their own would try."""
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
@@ -157,7 +157,7 @@ def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> Non
     assert set(kinds) == {(POSITION.key("anna"), True), (POSITION.key("bert"), True)}
 
 
-def test_a_tracking_agent_receives_its_units_raw_stream_and_speaks_as_itself_only(
+def test_tracking_agent_receives_its_units_raw_stream_and_publishes_only_as_itself(
     site: Site,
 ) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
@@ -212,7 +212,7 @@ def test_a_tracking_agent_fetches_raw_samples_of_its_unit_and_nothing_else(site:
         assert list(ears.query(other, b"", QUIET_S)) == []
 
 
-def test_a_unit_is_reported_the_time_under_its_own_key_only(site: Site) -> None:
+def test_unit_gets_the_time_under_its_own_key_only(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     site.station.serve(clock_key("*"), lambda *_: [b"the time"])
@@ -233,7 +233,7 @@ def test_a_certificate_of_the_authority_without_an_entry_can_do_nothing(site: Si
     assert_powerless(site, stray)
 
 
-def test_a_revoked_unit_is_out_once_the_router_reopens(site: Site) -> None:
+def test_revoked_unit_is_disconnected_when_the_router_reopens(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     lost, kept = site.unit(anna), site.unit(bert)
@@ -245,7 +245,7 @@ def test_a_revoked_unit_is_out_once_the_router_reopens(site: Site) -> None:
     assert_speechless(site, lost, "anna")
 
 
-def test_the_stolen_certificate_stays_out_when_the_name_is_enrolled_again(site: Site) -> None:
+def test_revoked_certificate_stays_refused_after_a_new_enrolment(site: Site) -> None:
     stolen = site.pki.enroll("anna")
     site.pki.revoke("anna")
     again = site.pki.enroll("anna")
@@ -262,7 +262,7 @@ def test_a_renewed_and_the_old_certificate_both_work(site: Site) -> None:
     publish_until_received(site, site.unit(new), "anna")
 
 
-def test_an_operator_receives_and_says_nothing(site: Site) -> None:
+def test_operator_receives_and_cannot_publish(site: Site) -> None:
     anna, operator = site.pki.enroll("anna"), site.pki.enroll("chief", Holder.OPERATOR)
     site.open()
     unit = site.unit(anna)

@@ -31,7 +31,7 @@ def site(tmp_path: Path) -> Iterator[Site]:
         yield Site(tmp_path, stack)
 
 
-def test_a_certificate_that_has_ended_is_refused(site: Site, tmp_path: Path) -> None:
+def test_expired_certificate_is_refused(site: Site, tmp_path: Path) -> None:
     then = datetime.now(UTC) - timedelta(hours=20)  # the authority is backdated by a day
     expired = PkiFolder(tmp_path, lambda: then).enroll("anna", valid=timedelta(hours=12))
     site.open()
@@ -77,7 +77,7 @@ def test_a_station_of_another_authority_is_refused_by_the_unit(site: Site, tmp_p
     assert_never_linked(site, UnitEndpoint(own.connect, trusting_another))
 
 
-def test_a_unit_that_asks_for_the_station_by_a_wrong_name_stays_out(site: Site) -> None:
+def test_unit_refuses_a_station_of_another_host_name(site: Site) -> None:
     own = site.pki.enroll("anna")
     site.open()
     assert_never_linked(site, UnitEndpoint((f"tls/{site.unnamed_address}",), own.identity))
@@ -105,7 +105,7 @@ def test_a_client_without_a_certificate_is_refused(site: Site) -> None:
         secured.recv(1)
 
 
-def test_a_station_whose_router_is_away_says_where_it_looked(site: Site) -> None:
+def test_missing_router_is_reported_with_its_address(site: Site) -> None:
     endpoint = ClientEndpoint((f"tls/{site.address}",), site.pki.station_identity(), patience_s=0.3)
     with pytest.raises(BusError, match=site.address):
         ZenohBus(endpoint)

@@ -35,7 +35,7 @@ def publish_until_received(unit: ZenohBus, station: ZenohBus, what: str) -> None
     until(arrived, what)
 
 
-def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(address: str) -> None:
+def test_unit_links_with_a_later_and_a_restarted_station(address: str) -> None:
     with closing(ZenohBus(UnitEndpoint((address,)))) as unit:
         unit.publish("muster/v1/anna/up/status", b"to nobody", Qos.LIVE)
         for start in ("first start", "restart"):
@@ -43,7 +43,7 @@ def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(addr
                 publish_until_received(unit, station, f"a message after the {start}")
 
 
-def test_what_is_stated_again_and_again_travels_without_its_key(address: str) -> None:
+def test_repeated_key_is_not_sent_again(address: str) -> None:
     """A thin link carries it, and a router would look up way and rights for each message."""
     with (
         closing(ZenohBus(StationEndpoint((address,)))) as station,
@@ -85,7 +85,7 @@ def relayed(address: str) -> Iterator[tuple[str, bytearray]]:
         thread.join()
 
 
-def test_a_closed_bus_leaves_no_thread_that_could_abort_the_program_as_it_ends(
+def test_closed_bus_leaves_no_thread(
     address: str,
 ) -> None:
     before = set(threading.enumerate())
@@ -100,7 +100,7 @@ def test_a_closed_bus_leaves_no_thread_that_could_abort_the_program_as_it_ends(
     kept.close()
 
 
-def test_a_taken_port_is_stated_in_words(address: str) -> None:
+def test_port_in_use_is_reported(address: str) -> None:
     with (
         closing(ZenohBus(StationEndpoint((address,)))),
         pytest.raises(BusError, match=r"another program uses this port.*choose another port"),
@@ -108,18 +108,18 @@ def test_a_taken_port_is_stated_in_words(address: str) -> None:
         ZenohBus(StationEndpoint((address,)))
 
 
-def test_an_address_that_makes_no_sense_is_stated_in_words() -> None:
+def test_invalid_address_is_reported() -> None:
     with pytest.raises(BusError, match="nonsense"):
         ZenohBus(StationEndpoint(("nonsense",)))
 
 
-def test_an_address_of_another_machine_is_stated_without_a_place_in_the_library() -> None:
+def test_foreign_address_is_reported_without_a_source_position() -> None:
     with pytest.raises(BusError, match=r"cannot listen on tcp/192\.0\.2\.1:7447") as refused:
         ZenohBus(StationEndpoint(("tcp/192.0.2.1:7447",)))
     assert ".rs" not in str(refused.value)
 
 
-def test_a_message_too_large_for_anyone_is_not_taken_and_the_link_stays(address: str) -> None:
+def test_oversized_message_is_dropped_and_the_link_stays(address: str) -> None:
     assert sizes_received(address, "muster/stations/v1/a/have", (500_000, 3_000_000, 5)) == [
         500_000,
         5,
@@ -127,7 +127,7 @@ def test_a_message_too_large_for_anyone_is_not_taken_and_the_link_stays(address:
 
 
 @pytest.mark.parametrize("suffix", ["up/status", "alert/event", "heartbeat"])
-def test_what_is_larger_than_any_units_message_ends_at_the_router(
+def test_message_above_the_size_of_units_is_dropped_by_the_router(
     address: str, suffix: str
 ) -> None:
     sizes = (MOST_PUBLISHED_BYTES, MOST_PUBLISHED_BYTES + 1, 16_000_000, 5)
@@ -150,7 +150,7 @@ def sizes_received(address: str, key: str, sizes: Sequence[int]) -> list[int]:
     return received
 
 
-def test_a_unit_that_asks_all_the_time_is_answered_a_few_times_a_second(address: str) -> None:
+def test_queries_of_a_unit_are_rate_limited(address: str) -> None:
     key, other = clock_key("evil"), clock_key("anna")
     asked: list[str] = []
 
@@ -173,7 +173,7 @@ def test_a_unit_that_asks_all_the_time_is_answered_a_few_times_a_second(address:
     assert 1 <= asked.count(key) < 50
 
 
-def test_an_answer_that_is_larger_than_any_units_ends_at_the_router(address: str) -> None:
+def test_answer_above_the_size_of_units_is_dropped_by_the_router(address: str) -> None:
     sizes = (MOST_ANSWERED_BYTES, MOST_ANSWERED_BYTES + 1, 5)
     key = "muster/v1/anna/journal/range"
     with (

@@ -26,7 +26,7 @@ def load_script() -> ModuleType:
     return script
 
 
-def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> None:
+def test_environment_without_pip_is_recreated(tmp_path: Path) -> None:
     """As a Debian without python3-venv leaves it, and a Python that was replaced by another."""
     shutil.copy(CHECKOUT / "muster", tmp_path)
     (tmp_path / "requirements.lock").touch()  # nothing to install: no network is needed
@@ -39,7 +39,7 @@ def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> No
     assert "the step 'Building Muster and its console' failed" in ran.stderr  # there is no project
 
 
-def test_the_quick_tests_are_two_for_each_core_and_leave_out_slow_ones(
+def test_quick_tests_use_two_workers_per_core_and_skip_slow_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     script = load_script()

@@ -96,7 +96,7 @@ def test_a_par_is_sent_received_and_acknowledged(tmp_path: Path) -> None:
     assert list(compare(records, make_pipeline())) == []
 
 
-def test_it_is_stated_again_until_the_unit_answers_and_done_once(tmp_path: Path) -> None:
+def test_command_is_repeated_until_answered_and_executed_once(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         unit = Unit(station.router)
@@ -112,7 +112,7 @@ def test_it_is_stated_again_until_the_unit_answers_and_done_once(tmp_path: Path)
         assert [one.command_id for one in unit.received] == ["c1"] * count
 
 
-def test_a_unit_that_comes_back_is_reported_what_it_missed(tmp_path: Path) -> None:
+def test_returning_unit_gets_missed_commands(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         unit = Unit(station.router)
@@ -124,7 +124,7 @@ def test_a_unit_that_comes_back_is_reported_what_it_missed(tmp_path: Path) -> No
         unit.go()
 
 
-def test_what_nobody_received_expires_and_is_stated_no_more(tmp_path: Path) -> None:
+def test_unanswered_command_expires_and_is_not_repeated(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.act(order(CommandKind.EVACUATE, lasts_s=0.3))
@@ -136,7 +136,7 @@ def test_what_nobody_received_expires_and_is_stated_no_more(tmp_path: Path) -> N
         assert unit.received == []
 
 
-def test_a_bus_that_fails_for_a_while_ends_nothing(
+def test_temporary_failure_of_the_bus_ends_no_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with LiveStation(tmp_path) as station:
@@ -156,7 +156,7 @@ def test_a_bus_that_fails_for_a_while_ends_nothing(
         until(lambda: state(station) == "received")
 
 
-def test_a_station_that_starts_again_goes_on_telling(tmp_path: Path) -> None:
+def test_restarted_station_continues_to_send_commands(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.act(order(CommandKind.EVACUATE))
@@ -180,7 +180,7 @@ def link() -> tuple[CommandSender, Unit, ManualClock]:
     )
 
 
-def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
+def test_repeats_wait_for_a_reply_until_the_end_of_the_command(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 2 * 10**9)
@@ -196,7 +196,7 @@ def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
     assert [one.header.seq for one in unit.received] == [1, 2, 3]
 
 
-def test_who_was_away_is_reported_at_once(
+def test_returning_unit_gets_commands_at_once(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 100 * 10**9)
@@ -210,7 +210,7 @@ def test_who_was_away_is_reported_at_once(
     assert len(unit.received) == 2
 
 
-def test_one_that_cannot_be_reported_keeps_nobody_else_from_being_reported(
+def test_unreachable_unit_does_not_delay_commands_to_others(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nor are the others told again and again for it."""
@@ -233,7 +233,7 @@ def test_one_that_cannot_be_reported_keeps_nobody_else_from_being_reported(
     assert len(unit.received) == 1
 
 
-def test_what_a_unit_has_answered_is_not_stated_again(
+def test_answered_command_is_not_repeated(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 0)

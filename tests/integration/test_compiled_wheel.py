@@ -70,13 +70,13 @@ def run(*before_the_checkout: Path) -> tuple[int, str]:
     return int(compiled), digest
 
 
-def test_it_decides_the_same_to_the_last_bit(installed: Path) -> None:
+def test_compiled_wheel_makes_identical_decisions(installed: Path) -> None:
     plain, compiled = run(), run(installed)
     assert (plain[0], compiled[0]) == (0, len(MODULES))
     assert compiled[1] == plain[1]
 
 
-def test_it_has_the_sources_too(installed: Path) -> None:
+def test_compiled_wheel_contains_the_sources(installed: Path) -> None:
     """Checkpoints are of one text of the program, and what fails is told with its lines."""
     for name in MODULES:
         source = Path(name.replace(".", "/")).with_suffix(".py")

@@ -111,7 +111,7 @@ async def asked(port: int) -> bytes:
         stream[1].close()
 
 
-async def test_who_asks_nothing_or_half_a_question_is_let_go(port: int) -> None:
+async def test_connection_without_a_complete_request_is_closed(port: int) -> None:
     nothing, half, slow = [await connect(port) for _ in range(3)]
     half[1].write(GET)
     slow[1].write(GET + b"\r\n")
@@ -123,7 +123,7 @@ async def test_who_asks_nothing_or_half_a_question_is_let_go(port: int) -> None:
         stream[1].close()
 
 
-async def test_who_does_not_go_on_with_a_body_is_let_go(port: int) -> None:
+async def test_connection_with_a_stalled_body_is_closed(port: int) -> None:
     whole, half = [await connect(port) for _ in range(2)]
     for stream in (whole, half):
         stream[1].write(GET.replace(b"GET", b"POST") + b"Content-Length: 4\r\n\r\nhe")
@@ -135,7 +135,7 @@ async def test_who_does_not_go_on_with_a_body_is_let_go(port: int) -> None:
         stream[1].close()
 
 
-async def test_who_goes_on_with_a_body_by_single_bytes_is_let_go(port: int) -> None:
+async def test_connection_with_a_very_slow_body_is_closed(port: int) -> None:
     """Each of them is progress, and none is enough."""
     drip = await connect(port)
     drip[1].write(GET.replace(b"GET", b"POST") + b"Content-Length: 1000\r\n\r\n")
@@ -149,7 +149,7 @@ async def test_who_goes_on_with_a_body_by_single_bytes_is_let_go(port: int) -> N
     drip[1].close()
 
 
-async def test_who_comes_new_gets_in_though_strangers_hold_all_they_can(
+async def test_new_connection_is_accepted_when_all_are_taken(
     port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of the place that holds most the oldest is let go; places with a login keep theirs."""
@@ -171,7 +171,7 @@ async def test_who_comes_new_gets_in_though_strangers_hold_all_they_can(
         one[1].close()
 
 
-async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -> None:
+async def test_closed_or_open_websocket_has_no_request_timeout(secure_port: int) -> None:
     """Nor is one that goes on: what it says is not waited for."""
     troubles: list[object] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, reported: troubles.append(reported))
@@ -188,7 +188,7 @@ async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -
     assert troubles == []
 
 
-async def test_one_place_has_only_so_many(port: int) -> None:
+async def test_connections_of_a_network_are_limited(port: int) -> None:
     streams = [await connect(port) for _ in range(8)]
     for _, writer in streams:
         writer.write(GET + b"\r\n")
@@ -205,7 +205,7 @@ async def test_one_place_has_only_so_many(port: int) -> None:
     assert answer == b"HTTP/1.1 200 OK"
 
 
-async def test_who_does_not_end_a_greeting_of_tls_is_let_go(secure_port: int) -> None:
+async def test_unfinished_tls_handshake_is_closed(secure_port: int) -> None:
     streams = [await connect(secure_port) for _ in range(2)]
     streams[1][1].write(b"\x16\x03\x01")  # and no more of it
     for reader, writer in streams:
@@ -214,7 +214,7 @@ async def test_who_does_not_end_a_greeting_of_tls_is_let_go(secure_port: int) ->
         writer.close()
 
 
-async def test_who_does_not_get_to_ask_over_tls_counts_too(
+async def test_unfinished_tls_handshakes_count_as_connections(
     secure_port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each takes more of the station's memory than who asks."""
@@ -229,7 +229,7 @@ async def test_who_does_not_get_to_ask_over_tls_counts_too(
         writer.close()
 
 
-async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_total_of_connections_is_limited(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connections, "MAX_CONNECTIONS", 3)
     streams = [await connect(port, f"127.0.0.{number}") for number in range(1, 6)]
     for _, writer in streams:
@@ -240,7 +240,7 @@ async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.Mon
         writer.close()
 
 
-async def test_who_asks_is_who_connected_whatever_a_header_says(port: int) -> None:
+async def test_client_address_is_of_the_connection_not_of_a_header(port: int) -> None:
     stream = await connect(port)
     stated = b"X-Forwarded-For: 192.0.2.1\r\nX-Forwarded-Proto: https\r\n\r\n"
     stream[1].write(GET.replace(b"/ ", b"/who ") + stated)
@@ -249,13 +249,13 @@ async def test_who_asks_is_who_connected_whatever_a_header_says(port: int) -> No
     stream[1].close()
 
 
-def test_a_network_of_ipv6_is_one_place() -> None:
+def test_ipv6_network_counts_as_one_client() -> None:
     assert network_of("2001:db8:1:2::1") == network_of("2001:db8:1:2:3:4:5:6")
     assert network_of("2001:db8:1:2::1") != network_of("2001:db8:1:3::1")
     assert network_of("192.0.2.1") != network_of("192.0.2.2")
 
 
-def test_connections_take_no_files_from_the_log() -> None:
+def test_file_limit_is_raised_for_connections() -> None:
     before = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(256, before[1]), before[1]))
     try:

@@ -11,7 +11,7 @@ from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 
 
 @pytest.mark.parametrize("after_s", [None, 0.0, 0.005, 0.01, 0.02, 0.05])
-async def test_stopped_as_it_begins_it_ends_in_order(after_s: float | None) -> None:
+async def test_server_stopped_during_its_start_ends_normally(after_s: float | None) -> None:
     """A station that hears of another one that leads as soon as it listens starts again."""
     stated: list[str] = []
     server = ConsoleServer(Starlette(), bind("127.0.0.1", 0))
@@ -24,7 +24,7 @@ async def test_stopped_as_it_begins_it_ends_in_order(after_s: float | None) -> N
     assert stated in ([], [f"ready {server.address}"])
 
 
-async def test_nonsense_is_refused_and_does_not_fill_the_log(
+async def test_invalid_requests_are_refused_and_logged_once(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     server = ConsoleServer(Starlette(), bind("127.0.0.1", 0))

@@ -50,7 +50,7 @@ def store(path: Path) -> Iterator[Store]:
         yield store
 
 
-def test_a_new_file_has_what_the_migrations_make(path: Path, store: Store) -> None:
+def test_new_file_has_the_schema_of_the_migrations(path: Path, store: Store) -> None:
     """And both are what the models say."""
     migrated = file_engine(path.with_name("migrated.sqlite"))
     with migrated.begin() as connection:
@@ -88,9 +88,7 @@ def schema_of(path: Path) -> dict[str, tuple[object, ...]]:
         }
 
 
-def test_a_database_of_this_programs_schema_is_opened_without_alembic(
-    path: Path, store: Store
-) -> None:
+def test_database_of_the_current_schema_is_opened_without_alembic(path: Path, store: Store) -> None:
     store.close()
     opened = (
         "import sys; from pathlib import Path; from base_station.storage.db.store import Store; "
@@ -116,7 +114,7 @@ def first_schema(path: Path, store: Store) -> Path:
     return path
 
 
-def test_an_older_database_is_brought_up_to_date_and_loses_nothing(
+def test_older_database_is_migrated_without_loss(
     first_schema: Path,
 ) -> None:
     clock = ManualClock(utc_ns=NS_PER_S)
@@ -131,7 +129,7 @@ def test_an_older_database_is_brought_up_to_date_and_loses_nothing(
                 command.check(alembic_config(connection))
 
 
-def test_a_database_whose_update_is_cut_short_stays_as_it_was(
+def test_interrupted_migration_changes_nothing(
     first_schema: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def killed(*_: object) -> None:
@@ -149,7 +147,7 @@ def test_a_database_whose_update_is_cut_short_stays_as_it_was(
         assert len(Records(store, ManualClock()).audit_entries(ALL)) == 3
 
 
-def test_what_is_committed_survives_a_power_cut(store: Store) -> None:
+def test_committed_rows_survive_a_power_cut(store: Store) -> None:
     with store.engine.connect() as connection:
         settings = [
             connection.exec_driver_sql(f"PRAGMA {name}").scalar()
@@ -167,16 +165,14 @@ def test_a_database_of_a_newer_program_is_refused(path: Path) -> None:
         Store(path)
 
 
-def test_what_is_no_database_is_refused_and_kept(path: Path) -> None:
+def test_file_that_is_no_database_is_refused_and_kept(path: Path) -> None:
     path.write_bytes(b"this is a shopping list, not a database" * 100)
     with pytest.raises(StoreError, match="muster base rebuild"):
         Store(path)
     assert path.read_bytes().startswith(b"this is a shopping list")
 
 
-def test_a_database_that_is_damaged_in_a_part_says_what_to_do(
-    path: Path, clock: ManualClock
-) -> None:
+def test_damaged_database_is_reported_with_the_remedy(path: Path, clock: ManualClock) -> None:
     with Store(path) as store:
         Records(store, clock).audit("chief", "Looked", "")
         with store.read() as session:
@@ -195,13 +191,13 @@ def test_a_database_that_is_damaged_in_a_part_says_what_to_do(
             records.audit("chief", "Looked", "again")
 
 
-def test_what_cannot_be_opened_is_one_sentence(path: Path) -> None:
+def test_unopenable_database_is_reported_with_a_reason(path: Path) -> None:
     path.mkdir()
     with pytest.raises(StoreError, match=r"unable to open.*can be written"):
         Store(path)
 
 
-def test_a_copy_can_be_taken_while_someone_writes(
+def test_database_is_copied_during_writes(
     store: Store, path: Path, tmp_path: Path, clock: ManualClock
 ) -> None:
     roster = Roster(store, clock)
@@ -221,7 +217,7 @@ def content(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("left", [(), ("-wal",), ("-wal", "-shm")])
-def test_a_database_that_nobody_has_open_is_read_and_its_folder_stays_as_it_was(
+def test_closed_database_is_read_without_changing_its_folder(
     left: tuple[str, ...], store: Store, path: Path, tmp_path: Path, clock: ManualClock
 ) -> None:
     """Also with what a kill left beside it, which has the changes in it."""
@@ -240,7 +236,7 @@ def test_a_database_that_nobody_has_open_is_read_and_its_folder_stays_as_it_was(
         assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
 
 
-def test_what_is_written_all_the_time_is_not_copied_in_halves(
+def test_copy_of_a_constantly_written_database_is_refused(
     store: Store, path: Path, tmp_path: Path, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def change_meanwhile(source: Path, target: Path) -> None:
@@ -254,7 +250,7 @@ def test_what_is_written_all_the_time_is_not_copied_in_halves(
 
 
 @pytest.mark.parametrize("name", ["site#1", "what?", "100%41", "?mode=memory"])
-def test_a_folder_may_be_called_anything(tmp_path: Path, clock: ManualClock, name: str) -> None:
+def test_folder_may_have_any_name(tmp_path: Path, clock: ManualClock, name: str) -> None:
     """What an address would take for something else is a part of the name."""
     folder = tmp_path / name
     folder.mkdir()
@@ -266,9 +262,7 @@ def test_a_folder_may_be_called_anything(tmp_path: Path, clock: ManualClock, nam
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-def test_a_full_disk_is_stated_and_nothing_is_half_written(
-    store: Store, clock: ManualClock
-) -> None:
+def test_full_disk_is_reported_and_leaves_no_partial_row(store: Store, clock: ManualClock) -> None:
     roster = Roster(store, clock)
     _limit_pages(store)
     with pytest.raises(StoreError, match="full"):
@@ -286,7 +280,7 @@ def _limit_pages(store: Store, pages: int = 0) -> None:
 # ---- the projection
 
 
-def test_a_store_that_fails_is_stated_and_catches_up(store: Store, clock: ManualClock) -> None:
+def test_failing_store_is_reported_and_catches_up(store: Store, clock: ManualClock) -> None:
     projection = SqlProjection(store)
     projection.project(STORY[0])
     assert projection.flush()
@@ -303,7 +297,7 @@ def test_a_store_that_fails_is_stated_and_catches_up(store: Store, clock: Manual
     projection.close()
 
 
-def test_nobody_waits_for_what_the_store_does_not_take(store: Store) -> None:
+def test_failing_store_does_not_block_the_projection(store: Store) -> None:
     projection = SqlProjection(store)
     _limit_pages(store)
     projection.project(acted(20, *(RegisterUnit(f"U-{n}", "x" * 4000) for n in range(50))))

@@ -36,7 +36,7 @@ def processes_of(folder: Path) -> list[str]:
     return found
 
 
-def test_in_a_script_it_receives_five_units_and_leaves_nothing_running(tmp_path):
+def test_demo_in_a_script_receives_five_units_and_leaves_no_process(tmp_path):
     demo = start_demo(tmp_path, "--for", "12")
     output, _ = demo.communicate(timeout=240)
     assert demo.returncode == 0, output
@@ -47,7 +47,7 @@ def test_in_a_script_it_receives_five_units_and_leaves_nothing_running(tmp_path)
     assert processes_of(tmp_path) == []
 
 
-def test_with_a_second_station_it_receives_them_too(tmp_path):
+def test_demo_with_a_second_station_receives_five_units(tmp_path):
     """The one that leads has its first login only once it leads."""
     demo = start_demo(tmp_path, "--standby", "--for", "3")
     output, _ = demo.communicate(timeout=240)
@@ -56,7 +56,7 @@ def test_with_a_second_station_it_receives_them_too(tmp_path):
     assert processes_of(tmp_path) == []
 
 
-def test_ctrl_c_ends_everything(tmp_path):
+def test_ctrl_c_ends_all_processes(tmp_path):
     demo = start_demo(tmp_path)
     assert demo.stdout is not None
     for line in demo.stdout:
@@ -71,7 +71,7 @@ def test_ctrl_c_ends_everything(tmp_path):
 
 
 @pytest.mark.parametrize("word", ["Enrolling", "Starting"])
-def test_ctrl_c_ends_it_also_before_it_has_begun_and_twice_does_no_harm(tmp_path, word):
+def test_ctrl_c_during_the_start_and_repeated_ends_the_demo(tmp_path, word):
     demo = start_demo(tmp_path)
     assert demo.stdout is not None
     while word not in demo.stdout.readline():

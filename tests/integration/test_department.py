@@ -42,7 +42,7 @@ def raised(number: int) -> Projection:
     return Projection(t_ns, alarms=(change,))
 
 
-def test_a_station_reports_under_its_own_key_alone_and_one_of_another_department_not_at_all(
+def test_station_reports_under_its_own_key_only_and_to_its_own_department(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     department = DepartmentSite(tmp_path / "city", closing)
@@ -86,9 +86,7 @@ def test_a_station_reports_under_its_own_key_alone_and_one_of_another_department
     assert not refused.is_linked()
 
 
-def test_events_wait_for_the_department_and_come_once_however_often_it_ends(
-    tmp_path: Path, closing: ExitStack
-) -> None:
+def test_events_wait_for_the_department_and_arrive_once(tmp_path: Path, closing: ExitStack) -> None:
     department = DepartmentSite(tmp_path / "city", closing)
     enrolment = department.enrol("engine-7")
     forwarder = department.forwarder(enrolment, tmp_path / "station")
@@ -118,7 +116,7 @@ def test_events_wait_for_the_department_and_come_once_however_often_it_ends(
     assert department.tables.missing() == {}
 
 
-def test_an_enrolment_of_a_unit_is_none_of_a_station(tmp_path: Path, closing: ExitStack) -> None:
+def test_enrolment_of_a_unit_is_refused_for_a_station(tmp_path: Path, closing: ExitStack) -> None:
     department = DepartmentSite(tmp_path / "city", closing)
     with pytest.raises(ConfigError, match="enrols the unit FF-01, not a station"):
         department.forwarder(department.pki.enroll("FF-01"), tmp_path / "station")

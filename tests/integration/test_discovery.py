@@ -121,7 +121,7 @@ def test_a_station_of_another_authority_is_ignored_and_named_once(
     assert "is of another authority" in named
 
 
-def test_a_station_that_announces_what_it_is_not_gets_no_link(
+def test_station_with_a_false_announcement_gets_no_link(
     site: EnrolledSite, elsewhere: PkiFolder, tmp_path: Path, stack: ExitStack, announce: Announce
 ) -> None:
     """The fingerprint is known to everybody on the network; the key is not."""
@@ -156,7 +156,7 @@ def test_two_stations_of_one_name_are_both_found(site: EnrolledSite, announce: A
     until(lambda: set(search.find()) == wanted, "both are found")
 
 
-def test_what_is_taken_back_is_found_no_more(
+def test_withdrawn_announcement_is_not_found(
     site: EnrolledSite, port: int, stack: ExitStack, announce: Announce
 ) -> None:
     announce(site.pki, port)
@@ -181,7 +181,7 @@ def test_without_a_network_nothing_is_found(
     assert finder(enrolment).find() == ()
 
 
-def test_a_station_announces_what_its_certificate_stands_for(
+def test_station_announces_the_names_of_its_certificate(
     site: EnrolledSite, port: int, stack: ExitStack
 ) -> None:
     config = StationConfig(bus=BusConfig((f"tls/127.0.0.1:{port}",), announce=True))
@@ -192,7 +192,7 @@ def test_a_station_announces_what_its_certificate_stands_for(
     until(lambda: search.find() == (f"tls/127.0.0.1:{port}",), "it is found")
 
 
-def test_a_station_and_a_unit_as_they_are_run(tmp_path: Path, port: int) -> None:
+def test_running_unit_discovers_a_running_station(tmp_path: Path, port: int) -> None:
     data = tmp_path / "station"
     pki = PkiFolder(data)
     pki.create("Test", [], [NOBODY])
@@ -213,7 +213,7 @@ def test_a_station_and_a_unit_as_they_are_run(tmp_path: Path, port: int) -> None
         assert station.stop() == 0
 
 
-def test_a_browser_finds_the_console_by_its_name_and_another_machine_does_not_take_it(
+def test_console_is_found_by_its_name_and_the_name_is_protected(
     stack: ExitStack,
 ) -> None:
     name = f"muster-{secrets.token_hex(4)}"  # other tests announce here too

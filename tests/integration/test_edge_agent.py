@@ -119,7 +119,7 @@ def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
     assert second.stop() == 0
 
 
-def test_what_was_stated_before_the_station_was_there_is_in_the_journal(port, start):
+def test_messages_before_the_stations_start_are_in_the_journal(port, start):
     agent = start()
     until(lambda: "no link: 127.0.0.1 is there but nothing listens" in agent.output(), "the reason")
     assert "not secured" in agent.output()
@@ -140,9 +140,7 @@ def test_what_was_stated_before_the_station_was_there_is_in_the_journal(port, st
 
 
 @pytest.mark.parametrize("hangs", [False, True])
-def test_one_that_starts_links_with_the_second_station_where_the_first_is_gone(
-    station, start, hangs
-):
+def test_starting_agent_links_with_the_second_station(station, start, hangs):
     with socket.socket() as first:
         first.bind(("127.0.0.1", 0))
         if hangs:
@@ -151,7 +149,7 @@ def test_one_that_starts_links_with_the_second_station_where_the_first_is_gone(
         until(lambda: station.of(Position))
 
 
-def test_a_command_is_answered_and_done_and_a_kill_does_not_undo_it(station, start):
+def test_command_is_answered_executed_and_kept_over_a_kill(station, start):
     agent = start()
     until(lambda: station.of(Position))
     header = Stamper("station", 1, SystemClock()).header()
@@ -170,7 +168,7 @@ def test_a_command_is_answered_and_done_and_a_kill_does_not_undo_it(station, sta
     until(lambda: closest_positions_ns(station) <= 60_000_000)
 
 
-def test_a_unit_that_does_not_track_sets_no_rate_of_positions_and_says_so(station, start):
+def test_unit_without_tracker_refuses_a_position_rate(station, start):
     """Its agent at the station sends them, over no radio."""
     start(WALK, "--tracker", "none")
     until(lambda: station.of(RawImu))
@@ -184,7 +182,7 @@ def test_a_unit_that_does_not_track_sets_no_rate_of_positions_and_says_so(statio
     assert "sends no positions" in reply.detail
 
 
-def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
+def test_acknowledgement_of_the_wearer_is_kept_over_a_kill(station, start):
     """The simulated wearer looks at the unit every 10 s."""
     par = Command(
         Stamper("station", 1, SystemClock()).header(), "c1", CommandKind.PAR_REQUEST, "anna", 0
@@ -222,7 +220,7 @@ def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
     assert missed <= set(station.journal(boot_id, arrived[-1]))
 
 
-def test_a_source_that_ends_is_stated_and_ends_the_agent(station, start):
+def test_end_of_the_source_is_reported_and_ends_the_agent(station, start):
     agent = start("simulated:straight", "--speed", "20")
     assert agent.wait() == 0
     until(lambda: len(station.of(UnitEvent)) >= 2)

@@ -47,7 +47,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Agent]]:
         print(agent.output())  # shown beside a failure
 
 
-def test_an_enrolled_agent_is_received_lives_and_serves_its_journal(site, start):
+def test_enrolled_agent_is_received_alive_and_serves_its_journal(site, start):
     site.open()
     agent = start("--enrolment", str(site.enrolment))
     until(lambda: len(site.positions) >= 5, "positions")
@@ -60,7 +60,7 @@ def test_an_enrolled_agent_is_received_lives_and_serves_its_journal(site, start)
     assert agent.stop() == 0
 
 
-def test_an_agent_of_another_authority_is_not_received_and_says_why(site, start, tmp_path, port):
+def test_agent_of_another_authority_is_refused_and_reports_the_reason(site, start, tmp_path, port):
     site.open()
     (tmp_path / "other").mkdir()
     other = PkiFolder(tmp_path / "other")
@@ -91,7 +91,7 @@ def test_a_secure_station_needs_an_enrolment(start):
     assert "needs the unit's enrolment" in agent.output()
 
 
-def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, start, tmp_path):
+def test_remote_tracking_agent_restarts_with_its_unit(site, start, tmp_path):
     file = tmp_path / "u1@tracker.toml"
     site.pki.enroll("u1", Holder.TRACKER).write(file)
     site.open()
@@ -115,9 +115,7 @@ def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, 
         (Holder.TRACKER, "simulated:straight", "not a unit"),
     ],
 )
-def test_an_enrolment_is_good_for_what_it_was_made_for_only(
-    site, start, tmp_path, holder, source, reported
-):
+def test_enrolment_is_valid_for_its_purpose_only(site, start, tmp_path, holder, source, reported):
     file = tmp_path / "u2.toml"
     site.pki.enroll("u2", holder).write(file)
     agent = start("--enrolment", str(file), source=source)
@@ -125,7 +123,7 @@ def test_an_enrolment_is_good_for_what_it_was_made_for_only(
     assert reported in " ".join(agent.output().split())
 
 
-def test_an_agent_that_waits_for_its_unit_ends_when_reported(start, port):
+def test_agent_waiting_for_its_unit_stops_on_request(start, port):
     agent = start("--connect", f"tcp/127.0.0.1:{port}", source="bus:u1")
     until(lambda: "trying again every second" in agent.output(), "the agent")
     assert agent.stop() == 0

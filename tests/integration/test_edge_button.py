@@ -50,7 +50,7 @@ def started(port: int, tmp_path: Path) -> Callable[..., AgentWithButton]:
     return started
 
 
-def test_a_button_that_is_held_is_one_mayday_which_outlives_the_agent(shown, started) -> None:
+def test_held_button_is_one_mayday_kept_over_a_restart(shown, started) -> None:
     def is_mayday() -> bool:
         status = shown.card.get("status")
         return bool(status and status["mayday"])

@@ -54,7 +54,7 @@ def test_a_unit_beside_its_station_is_checked_and_leaves_no_trace(site, check) -
     assert not site.alive
 
 
-def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> None:
+def test_missing_station_fails_the_check_with_an_exit_code(check) -> None:
     with check("--json") as checked:
         assert checked.wait() == 1
         printed = checked.output()
@@ -65,7 +65,7 @@ def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> N
     assert "nothing listens" in link["text"]
 
 
-def test_a_unit_whose_agent_runs_is_not_checked(site, check, tmp_path: Path) -> None:
+def test_unit_with_a_running_agent_is_not_checked(site, check, tmp_path: Path) -> None:
     with closing(UnitDataFolder(tmp_path / "units" / "u1")), check() as checked:
         assert checked.wait() == 2
         assert "stop it" in checked.output()
@@ -93,7 +93,7 @@ def test_devices_of_the_kernel_are_checked(tmp_path: Path, port: int) -> None:
         assert "NOT ready" in checked.output()
 
 
-def test_a_unit_checks_itself_at_its_start_and_its_card_shows_what_is_missing(
+def test_start_check_of_a_unit_is_shown_on_its_card(
     tmp_path: Path, serve: Callable[..., Command], data: Path, port: int
 ) -> None:
     compile_trackers()

@@ -87,15 +87,15 @@ def set_wide(tmp_path_factory) -> Ran:
     return ran(tmp_path_factory.mktemp("gains") / "wide", UNKNOWN_STD)
 
 
-def test_a_simulated_unit_knows_its_sensors(by_itself):
+def test_simulated_unit_has_the_gains_of_its_sensors(by_itself):
     assert by_itself.described.gain_std == by_itself.black_box.description.gain_std == 0.002
 
 
-def test_the_settings_go_before_what_the_source_says(set_wide):
+def test_settings_override_the_description_of_the_source(set_wide):
     assert set_wide.described.gain_std == set_wide.black_box.description.gain_std == UNKNOWN_STD
 
 
-def test_a_unit_that_knows_its_gains_states_itself_surer_on_the_same_way(by_itself, set_wide):
+def test_known_gains_reduce_the_uncertainty_of_the_same_path(by_itself, set_wide):
     assert by_itself.stated_m < 0.8 * set_wide.stated_m
     assert by_itself.last.heading_std_rad < set_wide.last.heading_std_rad
     apart_m = math.dist(

@@ -147,7 +147,7 @@ def worn(config: EdgeConfig, folder: UnitDataFolder, station: Station) -> Iterat
 
 
 @pytest.mark.parametrize("kind", ["gpsd", "nmea"])
-def test_fixes_of_a_receiver_place_a_walk(kind: str, tmp_path: Path) -> None:
+def test_fixes_of_a_receiver_position_a_walk(kind: str, tmp_path: Path) -> None:
     compile_trackers()
     imu, fixes = walked()
     due = [((fix.t_ns - BEGIN_NS) / NS_PER_S + LATE_S, stated_of(fix)) for fix in fixes]

@@ -99,7 +99,7 @@ def started(
     return started
 
 
-def test_the_agent_outlives_its_sensor_and_says_why(
+def test_agent_reports_a_removed_sensor_and_continues(
     tree, devices, requests, station, started, tmp_path: Path
 ) -> None:
     with started("--source", "iio:bmi160") as agent:

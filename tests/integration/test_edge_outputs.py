@@ -85,9 +85,7 @@ def delivery(browser: Browser, command_id: str) -> dict[str, Any]:
     return dict(unit)
 
 
-def test_an_order_reaches_the_wearer_the_station_is_reported_and_a_restart_repeats_it(
-    browser, shown, started
-) -> None:
+def test_order_notifies_the_wearer_and_is_repeated_after_a_restart(browser, shown, started) -> None:
     agent = started("terminal:FF-01")
     until(lambda: "linked to the station" in agent.output(), "the link")
     command_id = order(browser, "evacuate")
@@ -105,7 +103,7 @@ def test_an_order_reaches_the_wearer_the_station_is_reported_and_a_restart_repea
     assert again.stop() == 0
 
 
-def test_an_order_ends_by_an_answer_by_radio_is_played_again_and_ends_by_the_all_clear(
+def test_order_ends_with_an_answer_by_radio_and_with_the_all_clear(
     browser, shown, started, panel: PanelButton
 ) -> None:
     agent = started("terminal:FF-01")
@@ -223,7 +221,7 @@ def test_a_message_is_spoken_on_the_sound_card(
 
 
 @pytest.mark.skipif(which("espeak-ng") is None, reason="no espeak-ng on this machine")
-def test_without_a_sound_card_nobody_was_notified_and_the_reason_is_an_alarm(
+def test_missing_sound_card_is_an_alarm_and_notifies_no_wearer(
     browser, shown, started, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "asound.conf").write_text("")

@@ -74,7 +74,7 @@ def journalled(path: Path) -> list[Message]:
         ]
 
 
-def test_one_sensor_of_two_dies_and_the_unit_goes_on(
+def test_unit_continues_with_one_of_two_sensors(
     port: int, tmp_path: Path, messages: list[Message]
 ) -> None:
     foot = recording(tmp_path, "foot", FOOT_DIES_S)

@@ -26,7 +26,7 @@ def at_its_pace() -> Iterator[bytes]:
     return paced((0.05 * number, part) for number, part in enumerate(parts, start=1))
 
 
-def test_the_agent_outlives_its_sensor_and_says_why(port: int, tmp_path: Path) -> None:
+def test_agent_reports_a_removed_sensor_and_continues(port: int, tmp_path: Path) -> None:
     compile_trackers()
     received: list[Message] = []
 

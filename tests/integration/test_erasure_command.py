@@ -18,7 +18,7 @@ def forget(tmp_path: Path, data: Path, what: str, *, confirmed: str) -> tuple[in
         return command.wait(), command.output()
 
 
-def test_a_running_station_forgets_who_wears_a_unit(
+def test_running_station_erases_the_wearer_of_a_unit(
     serve: Callable[..., Command], data: Path, tmp_path: Path
 ) -> None:
     with Browser(serve().wait_ready(), data) as browser:
@@ -44,7 +44,7 @@ def test_a_running_station_forgets_who_wears_a_unit(
     assert {("muster base forget", "Unassign"), ("muster base forget", "ForgotPerson")} <= entries
 
 
-def test_a_request_that_is_none_is_answered_and_gone(tmp_path: Path) -> None:
+def test_invalid_request_is_answered_and_removed(tmp_path: Path) -> None:
     """Whatever wrote it: the station looks at it once."""
     folder = DataFolder(tmp_path)
     request = tmp_path / "forgetting-request.json"

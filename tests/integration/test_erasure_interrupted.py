@@ -34,7 +34,7 @@ class PowerCut(BaseException):
     """In the middle of forgetting."""
 
 
-def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> None:
+def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None:
     """The log goes segment by segment, and the tables after it."""
     story = Story(tmp_path / "station")
     data = DataFolder(story.folder)
@@ -104,7 +104,7 @@ BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
 
 @pytest.mark.parametrize("cut_at", [["log"], ["store"], ["compact"], ["audit"], [*BROKEN]])
 @pytest.mark.parametrize(("kind", "subject_id"), [("person", "p-77"), ("incident", "i1")])
-def test_in_many_tries_the_same_goes_and_the_audit_says_the_same(
+def test_erasure_in_several_attempts_equals_one_without_interruption(
     tmp_path: Path, reported: Path, kind: str, subject_id: str, cut_at: list[str]
 ) -> None:
     at_once, in_tries = (shutil.copytree(reported, tmp_path / name) for name in ("once", "tries"))
@@ -124,7 +124,7 @@ def begun_in(folder: Path) -> Path:
     return folder / "forgetting-begun.json"
 
 
-def test_who_was_there_is_kept_until_all_is_gone_and_nobody_is_forgotten_by_halves(
+def test_members_of_an_unfinished_erasure_are_kept_until_its_end(
     tmp_path: Path, reported: Path
 ) -> None:
     folder = shutil.copytree(reported, tmp_path / "station")
@@ -142,7 +142,7 @@ def test_who_was_there_is_kept_until_all_is_gone_and_nobody_is_forgotten_by_halv
 
 
 @pytest.mark.parametrize("cut_at", [[], ["log"], ["audit"]])
-def test_what_cannot_be_read_of_the_log_is_reported(
+def test_unreadable_parts_of_the_log_are_reported(
     tmp_path: Path, reported: Path, cut_at: list[str]
 ) -> None:
     """It goes with what is written anew: nobody takes that for whole as it was."""
@@ -166,7 +166,7 @@ def test_what_cannot_be_read_of_the_log_is_reported(
     assert [paths[-1].name in one for one in damage] == [True]
 
 
-def test_who_wore_nothing_and_is_gone_already_is_in_the_audit(tmp_path: Path) -> None:
+def test_erasure_of_a_removed_person_without_units_is_in_the_audit(tmp_path: Path) -> None:
     (tmp_path / "log").mkdir()
     with Store(tmp_path / "station.sqlite") as store:
         records = Records(store, SystemClock())

@@ -189,7 +189,7 @@ def erased(tmp_path_factory: pytest.TempPathFactory) -> _Erased:
     return _Erased(scene, folder, before)
 
 
-def test_no_word_of_its_people_is_left_and_every_word_of_the_others(erased: _Erased) -> None:
+def test_erasure_removes_messages_of_its_incident_only(erased: _Erased) -> None:
     stored = stored_in(erased.folder)
     assert erased.scene.of_lane
     assert [one for one in erased.scene.of_lane if one[2] in stored] == []
@@ -217,7 +217,7 @@ def decisions(records: Iterable[Record], wanted: Callable[[Decision], bool]) -> 
     return [encode(msgspec.structs.replace(one, header=header)) for one in found]
 
 
-def test_the_other_incident_replays_decision_by_decision_as_before(erased: _Erased) -> None:
+def test_other_incident_replays_with_the_same_decisions(erased: _Erased) -> None:
     with Store(erased.before / "station.sqlite") as store:
         records = Records(store, SystemClock())
         members = records.members_of(records.require_incident(HARBOUR))
@@ -259,7 +259,7 @@ def kept_of(folder: Path, incident_id: str) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("rebuilt", [False, True])
-def test_tables_have_all_of_the_other_incident_and_nobody_of_this_one(
+def test_tables_keep_the_other_incident_and_no_member_of_the_erased_one(
     erased: _Erased, tmp_path: Path, rebuilt: bool
 ) -> None:
     before, lane_before = (kept_of(erased.before, one) for one in (HARBOUR, LANE))
@@ -285,7 +285,7 @@ def report_of(folder: Path, incident_id: str, out: Path) -> str:
     return out.read_text(encoding="utf-8")
 
 
-def test_report_of_the_other_incident_is_as_before_and_of_this_one_names_nobody(
+def test_report_of_the_other_incident_is_unchanged_and_of_the_erased_one_anonymous(
     erased: _Erased, tmp_path: Path
 ) -> None:
     page = partial(report_of, out=tmp_path / "report.html")
@@ -305,7 +305,7 @@ class _PowerCut(BaseException):
     """In the middle of an erasure."""
 
 
-def test_cut_short_at_any_segment_and_done_again_the_log_is_the_same(
+def test_interrupted_and_repeated_erasure_gives_the_same_log(
     erased: _Erased, tmp_path: Path
 ) -> None:
     data = DataFolder(make_folder(tmp_path / "tries", erased.scene))
@@ -330,7 +330,7 @@ def test_cut_short_at_any_segment_and_done_again_the_log_is_the_same(
     assert list(read_log(data.log)) == erased.records()
 
 
-def test_done_again_nothing_changes_and_the_other_one_can_be_erased_after_it(
+def test_repeated_erasure_changes_nothing_and_the_other_incident_can_be_erased(
     erased: _Erased, tmp_path: Path
 ) -> None:
     folder = make_folder(tmp_path / "again", erased.scene)

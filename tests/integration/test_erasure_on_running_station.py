@@ -44,7 +44,7 @@ from tests.rig.live_station import LiveStation
 from tests.rig.waiting import until
 
 
-def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
+def test_erasure_runs_on_a_running_station(tmp_path: Path) -> None:
     folder = DataFolder(tmp_path)
     with LiveStation(tmp_path) as station, ExitStack() as closing:
         store = closing.enter_context(Store(folder.database))
@@ -84,7 +84,7 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         assert ANA.encode() not in msgspec.msgpack.encode(found)
 
 
-def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: Path) -> None:
+def test_requested_erasure_waits_for_the_end_of_a_new_incident(tmp_path: Path) -> None:
     folder, clock, acted = DataFolder(tmp_path), SystemClock(), []
     with ExitStack() as closing:
         recorder = Recorder(folder.log, clock)
@@ -108,7 +108,7 @@ def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: P
 
 
 @pytest.mark.parametrize("comes", [True, False])
-def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
+def test_damaged_segment_is_repaired_from_the_other_station_before_erasure(
     tmp_path: Path, reported: Path, monkeypatch: pytest.MonkeyPatch, comes: bool
 ) -> None:
     """Written anew without it the segment would look whole.  Nobody waits for it in vain."""
@@ -141,7 +141,7 @@ def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
     assert names_in(stored_in(folder.path), ANA) == []
 
 
-def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
+def test_checkpoints_are_removed_after_the_erasure_in_memory(
     tmp_path: Path, reported: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What it saves before that has everything in it."""
@@ -169,7 +169,7 @@ def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
             ).person("ada", "p-77")  # fmt: skip
 
 
-def test_a_recording_that_is_being_pulled_does_not_come_back(tmp_path: Path) -> None:
+def test_transfer_of_an_erased_recording_is_ended(tmp_path: Path) -> None:
     folder = DataFolder(tmp_path)
     asked: list[str] = []
 

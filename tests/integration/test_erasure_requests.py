@@ -29,7 +29,7 @@ def desk(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
     desk.close()
 
 
-async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStation) -> None:
+async def test_erasure_by_the_api_needs_the_name_and_an_administrator(desk: DeskStation) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     async with desk.client(Role.COMMANDER) as commander:
         person = (await commander.post("/people", json={"name": ANA})).json()
@@ -48,7 +48,7 @@ async def test_the_api_asks_for_the_name_and_for_an_administrator(desk: DeskStat
     assert not any(ANA in one["detail"] for one in entries)
 
 
-async def test_a_message_that_is_on_its_way_is_not_forgotten_before_it_is_there(
+async def test_erasure_with_an_undelivered_message_is_refused(
     desk: DeskStation,
 ) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
@@ -65,9 +65,7 @@ async def test_a_message_that_is_on_its_way_is_not_forgotten_before_it_is_there(
         assert (await administrator.post(path, json={"name": ANA})).status_code == 202
 
 
-async def test_who_was_taken_off_the_roster_can_still_be_forgotten(
-    desk: DeskStation, clock: ManualClock
-) -> None:
+async def test_removed_person_can_be_erased(desk: DeskStation, clock: ManualClock) -> None:
     """A commander may do that, and then everything but name and photo is still there."""
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     desk.drive.submit("chief", RegisterUnit("FF-01", "one"))
@@ -92,9 +90,7 @@ async def test_who_was_taken_off_the_roster_can_still_be_forgotten(
         assert (await administrator.post(path, json={"name": ANA})).status_code == 404
 
 
-async def test_who_wears_a_unit_is_forgotten_where_that_is_unassigned(
-    desk: DeskStation, clock: ManualClock
-) -> None:
+async def test_wearer_is_erased_after_unassignment(desk: DeskStation, clock: ManualClock) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     desk.drive.submit("chief", RegisterUnit("FF-01", "one"))
     async with desk.client(Role.ADMINISTRATOR) as administrator:

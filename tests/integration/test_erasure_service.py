@@ -74,7 +74,7 @@ def fused_in(story: Story) -> list[FusedPosition]:
     return [e.message for e in story.events() if isinstance(e.message, FusedPosition)]
 
 
-def test_the_others_stay_and_replay_the_same(story: Story) -> None:
+def test_other_people_are_kept_and_replay_identically(story: Story) -> None:
     forget(story, ANA)  # by name
 
     kept = list(read_log(story.folder / "log"))
@@ -97,7 +97,7 @@ def _bare(fused: FusedPosition) -> bytes:
     return encode(msgspec.structs.replace(fused, header=Header("station", 0, 0, 0)))
 
 
-def test_what_was_forgotten_is_not_fetched_from_the_unit_again(story: Story) -> None:
+def test_erased_messages_are_not_fetched_from_the_unit_again(story: Story) -> None:
     forget(story, "p-77")
     again = make_pipeline()
     for record in read_log(story.folder / "log"):
@@ -111,7 +111,7 @@ def test_what_was_forgotten_is_not_fetched_from_the_unit_again(story: Story) -> 
         assert seen == [boot.seen for boot in before.state.units[unit_id].boots]
 
 
-def test_the_audit_keeps_who_did_what(story: Story) -> None:
+def test_audit_is_kept(story: Story) -> None:
     forget(story, "p-77")
     with Store(story.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
@@ -131,7 +131,7 @@ def test_the_audit_keeps_who_did_what(story: Story) -> None:
     assert worn == {"p-77": ERASED_TEXT, "p-bo": BO, "p-cem": CEM}
 
 
-def test_the_tables_made_again_from_the_log_know_no_more(story: Story) -> None:
+def test_rebuilt_tables_contain_no_erased_person(story: Story) -> None:
     forget(story, "p-77")
     station_app.rebuild(story.folder, lambda _: None)
     assert names_in(story.stored(), ANA) == []
@@ -143,7 +143,7 @@ def test_the_tables_made_again_from_the_log_know_no_more(story: Story) -> None:
     assert list(tracked) == ["FF-01", "FF-02"]
 
 
-def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
+def test_incident_is_erased_with_all_its_members(story: Story) -> None:
     forget(story, "i1")
     after = story.stored()
     assert [payload for payload in story.ana_stated if payload in after] == []
@@ -178,7 +178,7 @@ def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
     assert set(texts) == {ERASED_TEXT}
 
 
-def test_an_incident_is_forgotten_again_when_a_unit_brings_more_of_it(story: Story) -> None:
+def test_late_messages_of_an_erased_incident_are_erased(story: Story) -> None:
     """Out of its journal, with the next link."""
     forget(story, "i1")
     headers = [one.message.header for one in story.events()]
@@ -194,7 +194,7 @@ def test_an_incident_is_forgotten_again_when_a_unit_brings_more_of_it(story: Sto
         assert late not in story.stored()
 
 
-def test_an_open_incident_and_a_stranger_are_refused(story: Story) -> None:
+def test_erasure_of_an_open_incident_or_unknown_person_is_refused(story: Story) -> None:
     for stranger in ("p-nobody", "A. Kovač"):
         with pytest.raises(UserError, match="knows a person"):
             forget(story, stranger)
@@ -207,7 +207,7 @@ def test_an_open_incident_and_a_stranger_are_refused(story: Story) -> None:
             forget(story, what)
 
 
-def test_who_wears_a_unit_is_unassigned_first(story: Story) -> None:
+def test_wearer_is_unassigned_before_the_erasure(story: Story) -> None:
     """Else what the unit goes on saying would be forgotten never.  It is asked about before."""
     with LiveStation(story.folder) as station:
         station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
@@ -226,7 +226,7 @@ def test_who_wears_a_unit_is_unassigned_first(story: Story) -> None:
         assert station.pipeline.state.units["FF-01"].wearer.person is None
 
 
-def test_who_is_not_confirmed_stays_assigned(story: Story) -> None:
+def test_refused_confirmation_keeps_the_assignment(story: Story) -> None:
     with LiveStation(story.folder) as station:
         station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
     station_app.rebuild(story.folder, lambda _: None)
@@ -240,14 +240,14 @@ def test_who_is_not_confirmed_stays_assigned(story: Story) -> None:
         assert list(Roster(store, SystemClock()).worn_by("p-77")) == ["FF-01"]
 
 
-def test_who_was_removed_is_forgotten_by_the_name(story: Story) -> None:
+def test_removed_person_is_erased_by_name(story: Story) -> None:
     with Store(story.folder / "station.sqlite") as store:
         assert Roster(store, SystemClock()).remove_person("p-77")
     forget(story, ANA)
     assert names_in(story.stored(), ANA) == []
 
 
-def test_a_name_that_two_people_have_had_is_refused(story: Story) -> None:
+def test_ambiguous_name_is_refused(story: Story) -> None:
     with Store(story.folder / "station.sqlite") as store:
         roster, records = Roster(store, SystemClock()), Records(store, SystemClock())
         other = roster.add_person(ANA, "", "")
@@ -258,7 +258,7 @@ def test_a_name_that_two_people_have_had_is_refused(story: Story) -> None:
 
 
 @pytest.mark.parametrize("what", ["p-77", "i1"])
-def test_what_a_command_left_half_done_the_station_goes_on_with(
+def test_station_completes_an_unfinished_erasure_of_a_command(
     story: Story, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     def cut_short(*_: object) -> None:
@@ -282,7 +282,7 @@ def test_what_a_command_left_half_done_the_station_goes_on_with(
     assert job.records > 0
 
 
-def test_a_name_is_found_whatever_holds_it(tmp_path: Path) -> None:
+def test_names_are_found_in_every_kind_of_record(tmp_path: Path) -> None:
     """Every kind of record that can hold a text is in the story."""
     story = Story(tmp_path / "station", older=True)
     kinds = {key for _, key, payload in story.before if ANA.encode() in payload}

@@ -45,7 +45,7 @@ def units_in(path: Path) -> set[str]:
         return {row["unit_id"] for row in csv.DictReader(file)}
 
 
-def test_a_file_has_everybody_or_whom_one_asks_for(log: Path, tmp_path: Path) -> None:
+def test_exported_file_has_all_or_the_chosen_units(log: Path, tmp_path: Path) -> None:
     everybody, one = tmp_path / "all.csv", tmp_path / "one.csv"
     done = export(log, everybody)
     assert done.exit_code == 0, done.output
@@ -55,7 +55,7 @@ def test_a_file_has_everybody_or_whom_one_asks_for(log: Path, tmp_path: Path) ->
     assert units_in(one) == {"FF-02"}
 
 
-def test_a_name_that_ends_in_gz_is_of_a_compressed_file(log: Path, tmp_path: Path) -> None:
+def test_file_name_with_gz_gives_a_compressed_file(log: Path, tmp_path: Path) -> None:
     plain, packed = tmp_path / "tracks.csv", tmp_path / "tracks.csv.gz"
     assert export(log, plain).exit_code == 0
     assert export(log, packed).exit_code == 0
@@ -70,7 +70,7 @@ def test_a_full_disk_leaves_no_file(log: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["raw", "smoothed"])
-def test_trails_of_another_kind_are_others(log: Path, tmp_path: Path, kind: str) -> None:
+def test_trails_of_another_kind_differ(log: Path, tmp_path: Path, kind: str) -> None:
     shown, other = tmp_path / "shown.csv", tmp_path / f"{kind}.csv"
     assert export(log, shown).exit_code == 0
     done = export(log, other, "--kind", kind)

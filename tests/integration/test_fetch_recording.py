@@ -62,7 +62,7 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
         yield Running(tmp_path_factory.mktemp("fetch"), stack)
 
 
-def test_the_command_pulls_what_the_unit_has_recorded(running: Running) -> None:
+def test_command_pulls_the_recording_of_a_unit(running: Running) -> None:
     code, reported = running.fetch(UNIT, "--from", "2020-01-01T00:00+00:00")
     assert code == 0, reported
     (boot,) = running.pulled()
@@ -71,7 +71,7 @@ def test_the_command_pulls_what_the_unit_has_recorded(running: Running) -> None:
     assert sum(1 for _ in BlackBoxSource(boot).batches()) > 10
 
 
-def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -> None:
+def test_transfer_by_the_api_shows_its_progress(running: Running) -> None:
     form = {"unit_id": UNIT, "from_ms": running.began_ms}
     asked = running.browser.call("POST", "/recordings", json=form)
 
@@ -99,7 +99,7 @@ def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -
         ([UNIT, "--from", "2020-01-01", "--to", "2020-01-02"], "no recording of that time"),
     ],
 )
-def test_what_cannot_be_is_refused_in_words(
+def test_invalid_request_is_refused_with_a_reason(
     running: Running, arguments: list[str], reported: str
 ) -> None:
     result = CliRunner().invoke(app, ["fetch-recording", *arguments, *running.where])

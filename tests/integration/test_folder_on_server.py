@@ -103,7 +103,7 @@ def rows(store: Database, tables: list[type[Base]]) -> dict[str, list[str]]:
         }
 
 
-def test_users_people_and_projections_go_to_the_server_and_come_back_in_a_backup(
+def test_tables_are_moved_to_the_server_and_restored_from_a_backup(
     moved: Path, stated: Path, address: ServerAddress, tmp_path: Path
 ) -> None:
     kept = [one.class_ for one in Base.registry.mappers if one.class_ not in PROJECTIONS]
@@ -118,7 +118,7 @@ def test_users_people_and_projections_go_to_the_server_and_come_back_in_a_backup
     back_up(moved, tmp_path / "backup", lambda _: None)
 
 
-def test_commands_on_the_folder_find_the_server_by_its_note(
+def test_commands_on_the_folder_find_the_server_by_its_stored_address(
     moved: Path, address: ServerAddress
 ) -> None:
     (moved / "station.sqlite").unlink()  # which nothing needs any more
@@ -136,9 +136,7 @@ def test_commands_on_the_folder_find_the_server_by_its_note(
         assert rows(store, LOGGED) == before
 
 
-def test_what_the_tables_lack_of_a_time_is_projected_again_and_the_rest_stays(
-    moved: Path, address: ServerAddress
-) -> None:
+def test_missing_rows_of_a_time_are_projected_again(moved: Path, address: ServerAddress) -> None:
     archive = Archive(
         LogFeed(moved / "log").records, Checkpoints(moved / "checkpoints"), past_pipeline
     )
@@ -153,9 +151,7 @@ def test_what_the_tables_lack_of_a_time_is_projected_again_and_the_rest_stays(
         assert rows(store, LOGGED) == before
 
 
-def test_nobody_is_forgotten_while_the_log_is_projected_again(
-    moved: Path, address: ServerAddress
-) -> None:
+def test_erasure_waits_for_the_projection_of_the_log(moved: Path, address: ServerAddress) -> None:
     """What was read of the log before would be written behind the erasure."""
     ProjectionMark(moved / "tables-behind").note(1)
     clock = SystemClock()

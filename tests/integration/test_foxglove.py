@@ -72,7 +72,7 @@ def serve_replay(log: Path, window_ns: tuple[int, int], closing: ExitStack) -> F
     return closing.enter_context(foxglove_client(server.port))
 
 
-def test_a_client_sees_what_is_recorded_and_first_what_is_newest(
+def test_client_gets_recorded_messages_and_first_the_newest(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     writer = SegmentWriter(tmp_path)
@@ -158,7 +158,7 @@ def test_the_command_replays_an_incident_of_a_log_without_a_database(
     assert ticks[-1][0] == window_ns[1]
 
 
-def test_the_command_writes_a_layout_with_everybody_in_the_log(tmp_path: Path) -> None:
+def test_command_writes_a_layout_with_all_units_of_the_log(tmp_path: Path) -> None:
     write_walk(tmp_path / "log")
     out = tmp_path / "layout.json"
     arguments = ["foxglove", "layout", str(out), "--data", str(tmp_path)]

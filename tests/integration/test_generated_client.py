@@ -99,7 +99,7 @@ def generated(
         yield made
 
 
-def test_a_generated_client_works_an_incident_and_reads_problems(generated: Generated) -> None:
+def test_generated_client_handles_an_incident_and_problems(generated: Generated) -> None:
     person_id = enlist(generated)
     incident_id = work(generated)
     upload(generated, person_id)

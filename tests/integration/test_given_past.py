@@ -82,7 +82,7 @@ def files_of(folder: Path) -> dict[str, int]:
     return {str(one.relative_to(folder)): one.stat().st_mtime_ns for one in folder.rglob("*")}
 
 
-def test_a_log_without_a_database_is_judged_and_nothing_is_put_beside_it(copy: Path) -> None:
+def test_log_without_a_database_is_assessed_and_its_folder_unchanged(copy: Path) -> None:
     before = files_of(copy)
     judged = run("assess", "i1", copy)
     assert judged.exit_code == 0, judged.output
@@ -94,15 +94,13 @@ def test_a_log_without_a_database_is_judged_and_nothing_is_put_beside_it(copy: P
     assert files_of(copy) == before
 
 
-def test_what_never_was_is_not_asked_of_an_empty_database(copy: Path) -> None:
+def test_unknown_incident_is_refused_with_the_known_ones(copy: Path) -> None:
     result = run("assess", "i9", copy)
     assert isinstance(result.exception, UserError)
     assert "i1 (" in str(result.exception)
 
 
-def test_the_log_can_be_given_by_itself_and_its_files_under_any_name(
-    given: Path, tmp_path: Path
-) -> None:
+def test_log_folder_alone_and_renamed_files_are_read(given: Path, tmp_path: Path) -> None:
     assert run("assess", "i1", given / "log").exit_code == 0
     renamed = tmp_path / "from the drive"
     renamed.mkdir()
@@ -115,7 +113,7 @@ def test_the_log_can_be_given_by_itself_and_its_files_under_any_name(
     assert judged.output == run("assess", "i1", given).output
 
 
-def test_one_file_is_enough_where_all_of_it_is_in_that(tmp_path: Path) -> None:
+def test_single_file_with_the_whole_incident_is_enough(tmp_path: Path) -> None:
     _log(tmp_path, walked())
     (path,) = segment_paths(tmp_path / "log")
     path = path.rename(tmp_path / "evidence 7.mcap")
@@ -124,7 +122,7 @@ def test_one_file_is_enough_where_all_of_it_is_in_that(tmp_path: Path) -> None:
     assert "FF-02" in judged.output
 
 
-def test_what_is_no_log_is_stated(given: Path, tmp_path: Path) -> None:
+def test_folder_without_a_log_is_refused(given: Path, tmp_path: Path) -> None:
     def refusal(data: Path) -> str:
         result = run("assess", "i1", data)
         assert isinstance(result.exception, LogError)
@@ -158,7 +156,7 @@ def closing_at_end() -> Iterator[ExitStack]:
         yield stack
 
 
-def test_what_a_log_lacks_is_reported(
+def test_missing_and_damaged_segments_are_reported(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     paths = segment_paths(copy / "log")
@@ -174,7 +172,7 @@ def test_what_a_log_lacks_is_reported(
     assert list(opened.archive().flaws()) == [one for one in reported if "database" not in one]
 
 
-def test_a_whole_log_has_nothing_to_tell_of(
+def test_complete_log_has_no_defects(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
@@ -186,7 +184,7 @@ def test_a_whole_log_has_nothing_to_tell_of(
     assert any("missing" in one for one in reported), "only the database knows of it"
 
 
-def test_damage_is_reported_when_it_is_come_by_and_once(
+def test_damage_is_reported_once_when_read(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
@@ -201,7 +199,7 @@ def test_damage_is_reported_when_it_is_come_by_and_once(
     assert damage in opened.archive().flaws(), "and on the screen, by then"
 
 
-def test_damage_that_a_seek_passes_over_is_found_by_looking_on(
+def test_damage_skipped_by_a_seek_is_found_by_the_check(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
@@ -233,7 +231,7 @@ def of_another_time(path: Path) -> None:
     shutil.copy(segment_paths(elsewhere / "log")[0], path)
 
 
-def test_a_segment_of_another_station_behind_the_log_lengthens_no_replay(
+def test_foreign_segment_after_the_log_is_left_out(
     tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """With the next number and a later time, of an incident that is not closed in the log."""
@@ -254,7 +252,7 @@ def test_a_segment_of_another_station_behind_the_log_lengthens_no_replay(
 
 
 @pytest.mark.parametrize("is_station", [True, False])
-def test_files_that_cannot_be_of_the_log_are_named(
+def test_foreign_files_are_reported(
     is_station: bool, copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """In a station's folder, or among files that somebody gives."""
@@ -284,7 +282,7 @@ def cut_short(path: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("has_database", [True, False])
-def test_whatever_became_of_a_segment_is_reported_and_the_replay_is_as_long_as_before(
+def test_damaged_segment_is_reported_and_keeps_the_length_of_the_replay(
     damage: Callable[[Path], None],
     words: str,
     has_database: bool,
@@ -302,7 +300,7 @@ def test_whatever_became_of_a_segment_is_reported_and_the_replay_is_as_long_as_b
     assert max(one.end_ns for one in opened.folder.segments()) == end_ns
 
 
-def test_a_part_of_a_log_from_its_middle_is_no_other_program(
+def test_middle_part_of_a_log_is_not_reported_as_another_program(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """It lacks what was before, and that is told."""
@@ -313,7 +311,7 @@ def test_a_part_of_a_log_from_its_middle_is_no_other_program(
     assert not any("decides otherwise" in one for one in reported)
 
 
-def test_a_log_of_which_only_the_index_is_cut_has_lost_nothing(
+def test_log_with_a_truncated_index_has_lost_nothing(
     copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     path = segment_paths(copy / "log")[1]
@@ -332,7 +330,7 @@ def test_a_log_of_which_only_the_index_is_cut_has_lost_nothing(
     assert not any("lost" in one or "cannot be read" in one for one in reported)
 
 
-def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
+def test_outdated_database_is_not_used_for_the_log(
     tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """As where the log was copied again and the database was not."""
@@ -355,7 +353,7 @@ def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
     )
 
 
-def test_another_program_that_decides_otherwise_is_reported(
+def test_different_decisions_of_another_version_are_reported(
     tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """Nobody may take what it shows for what was shown."""
@@ -371,7 +369,7 @@ def _open(data: Path, incident_id: str, reported: list[str], stack: ExitStack) -
     )
 
 
-def test_a_replay_that_is_ordered_to_end_as_it_begins_leaves_no_copy_of_people_s_data(
+def test_replay_stopped_during_its_start_leaves_no_personal_data(
     copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scratch = tmp_path / "scratch"
@@ -385,7 +383,7 @@ def test_a_replay_that_is_ordered_to_end_as_it_begins_leaves_no_copy_of_people_s
 
 
 @pytest.mark.parametrize(("left", "writable"), [(("-wal",), True), (("-wal", "-shm"), False)])
-def test_a_replay_leaves_the_folder_as_it_was(
+def test_replay_leaves_the_folder_unchanged(
     left: tuple[str, ...], writable: bool, copy: Path, tmp_path: Path
 ) -> None:
     """Also what a kill left beside the database, and where nothing can be written."""
@@ -418,7 +416,7 @@ def test_a_replay_leaves_the_folder_as_it_was(
     assert {one: one.stat().st_mtime_ns for one in folders} == folders
 
 
-def test_anyone_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
+def test_replay_of_another_stations_folder_has_its_own_login(copy: Path, tmp_path: Path) -> None:
     """Nobody here knows its passwords, and they are not to be changed in what was given."""
     station_app.rebuild(copy, lambda _: None)
     with Store(copy / "station.sqlite") as store:

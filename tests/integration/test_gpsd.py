@@ -79,7 +79,7 @@ def sure_fix(reader: GnssReader) -> GpsSample:
     return found[0]
 
 
-def test_a_fix_is_what_the_receiver_stated(reader: GnssReader) -> None:
+def test_fix_contains_the_values_of_the_receiver(reader: GnssReader) -> None:
     fix = sure_fix(reader)
     assert (fix.lat_deg, fix.lon_deg) == pytest.approx((HERE.lat_deg, HERE.lon_deg), abs=1e-6)
     assert fix.height_m == pytest.approx(HERE.height_m, abs=0.1)  # above the ellipsoid
@@ -88,7 +88,7 @@ def test_a_fix_is_what_the_receiver_stated(reader: GnssReader) -> None:
     assert abs(fix.t_ns - SystemClock().monotonic_ns()) < 5 * NS_PER_S
 
 
-def test_one_that_is_begun_again_is_received_again(gpsd: Gpsd, reader: GnssReader) -> None:
+def test_restarted_gpsd_is_received_again(gpsd: Gpsd, reader: GnssReader) -> None:
     sure_fix(reader)
     gpsd.end()
     until(reader.take_faults, "word of its end")

@@ -84,7 +84,7 @@ def opened_offline(path: Path, incident_id: str, closing_all: ExitStack) -> Offl
     ids=["file", "archive", "backup"],
 )
 @pytest.mark.parametrize("radio", [("--radio",), ()], ids=["with audio", "without"])
-def test_who_gets_it_has_what_was_brought_in_and_receives_the_radio(
+def test_handed_over_incident_contains_imported_files_and_radio(
     data: Path,
     tmp_path: Path,
     command: tuple[str, ...],
@@ -115,7 +115,7 @@ def test_who_gets_it_has_what_was_brought_in_and_receives_the_radio(
         assert list(found.log.records(*window)) == before
 
 
-def test_any_reader_finds_the_audio_and_the_files(data: Path, tmp_path: Path) -> None:
+def test_standard_reader_finds_the_audio_and_the_files(data: Path, tmp_path: Path) -> None:
     file = tmp_path / "whole.mcap"
     muster("export", "i1", file, "--data", data, "--radio")
     with file.open("rb") as stream:

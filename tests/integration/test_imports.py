@@ -107,7 +107,7 @@ async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
         yield client
 
 
-async def test_a_file_is_brought_in_once_shown_on_the_plan_and_taken_out(
+async def test_file_is_imported_once_shown_on_the_plan_and_removed(
     station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
 ) -> None:
     now_s = clock.utc_ns() // NS_PER_S
@@ -162,7 +162,7 @@ async def test_a_file_is_brought_in_once_shown_on_the_plan_and_taken_out(
     assert len(list((tmp_path / "imports").rglob("*.original"))) == 2
 
 
-async def test_of_a_file_that_is_not_taken_nothing_is_left(
+async def test_refused_file_leaves_nothing(
     station: DeskStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
@@ -200,7 +200,7 @@ async def test_of_a_file_that_is_not_taken_nothing_is_left(
         assert "takes nothing" in await refusal(503, track)
 
 
-def test_another_stations_incident_and_a_track_are_kept_with_the_station(
+def test_incident_of_another_station_and_a_track_are_stored(
     data: Path, other_incident: Path, tmp_path: Path
 ) -> None:
     t_s = opened_s(data)
@@ -260,7 +260,7 @@ def answer(station: ImportRequests, waiting: threading.Thread) -> None:
     until(is_answered, "an answer")
 
 
-def test_a_running_station_logs_what_a_command_has_brought(
+def test_running_station_logs_the_import_of_a_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = DataFolder(tmp_path)

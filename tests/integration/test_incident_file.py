@@ -111,7 +111,7 @@ def actions_in(file: Path) -> Iterator[type[Action]]:
             yield type(done.action)
 
 
-def test_the_plain_reader_finds_all_of_it(alone: Path) -> None:
+def test_standard_reader_finds_all_records(alone: Path) -> None:
     with alone.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True)
         summary = reader.get_summary()
@@ -130,7 +130,7 @@ def test_the_plain_reader_finds_all_of_it(alone: Path) -> None:
     assert about["closed"] > about["opened"] > "2023"
 
 
-def test_what_held_when_it_was_opened_is_in_it_once_and_other_incidents_are_not(
+def test_file_contains_the_initial_state_once_and_no_other_incident(
     alone: Path,
 ) -> None:
     counts = Counter(actions_in(alone))
@@ -141,7 +141,7 @@ def test_what_held_when_it_was_opened_is_in_it_once_and_other_incidents_are_not(
     assert counts[Assign] == 2
 
 
-def test_it_is_read_as_the_station_reads_it(data: Path, alone: Path, tmp_path: Path) -> None:
+def test_file_is_read_by_the_station(data: Path, alone: Path, tmp_path: Path) -> None:
     found = read_incident_file(alone)
     assert found is not None
     assert (found.incident_id, found.people["bo00"]) == ("i2", PEOPLE["bo00"])
@@ -159,9 +159,7 @@ def test_it_is_read_as_the_station_reads_it(data: Path, alone: Path, tmp_path: P
     assert again.read_bytes() == alone.read_bytes()
 
 
-def test_what_is_no_such_file_or_cannot_be_written_is_reported(
-    data: Path, alone: Path, tmp_path: Path
-) -> None:
+def test_invalid_source_or_target_is_reported(data: Path, alone: Path, tmp_path: Path) -> None:
     torn, out = tmp_path / "torn.mcap", tmp_path / "out.mcap"
     torn.write_bytes(alone.read_bytes()[:-200])
     foreign = next((data / "log").glob("*.mcap"))

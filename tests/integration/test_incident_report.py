@@ -86,7 +86,7 @@ def section(written: bytes, heading: str) -> str:
     return " ".join(_Page(found[1]).text.split())
 
 
-def test_it_tells_what_happened_and_who_did_it(written: bytes) -> None:
+def test_report_contains_events_and_their_users(written: bytes) -> None:
     summary = _Page(written.decode()).text
     assert "Incident report: Mill Lane 4" in summary
     assert "2023-11-14 22:18:20 by chief" in summary
@@ -106,7 +106,7 @@ def test_it_tells_what_happened_and_who_did_it(written: bytes) -> None:
         assert words in timeline
 
 
-def test_roll_calls_and_orders_say_who_answered_and_how(written: bytes) -> None:
+def test_roll_calls_and_orders_list_answers(written: bytes) -> None:
     par = section(written, "Roll calls (PAR)")
     assert "Anna Vos (FF-01) (own unit, after 8 s)" in par
     assert "Carl Berg (FF-03) (by radio, entered by chief after 15 s)" in par
@@ -121,7 +121,7 @@ def test_roll_calls_and_orders_say_who_answered_and_how(written: bytes) -> None:
     assert "All clear chief 3 Carl Berg (FF-03) (own unit" in again
 
 
-def test_each_person_has_way_heat_and_radio_gaps(written: bytes) -> None:
+def test_people_are_listed_with_distance_heat_and_radio_gaps(written: bytes) -> None:
     people = section(written, "People")
     assert re.search(r"Carl Berg, blue FF-03 22:13:20 to 22:18:20 \d+ m 3 min", people)
     assert "180 °C at 22:15:51 17%" in people
@@ -137,7 +137,7 @@ def test_a_radio_gap_is_dashed_and_every_floor_has_its_plan(written: bytes) -> N
     assert "No plan" not in plans
 
 
-def test_an_alarm_explains_itself(written: bytes) -> None:
+def test_alarms_are_explained_by_their_measurements(written: bytes) -> None:
     text = written.decode()
     traces = text[text.index("<h2>Alarms explained") : text.index("<h2>Quality")]
     assert traces.count("<svg") == 4
@@ -145,7 +145,7 @@ def test_an_alarm_explains_itself(written: bytes) -> None:
     assert heat.count("stroke-dasharray") == 3  # caution, warning and critical
 
 
-def test_settings_say_what_differs_from_the_defaults(written: bytes) -> None:
+def test_settings_list_differences_from_the_defaults(written: bytes) -> None:
     settings = section(written, "Versions and settings")
     assert f"Made by Muster {version('muster')}" in settings
     assert "no-motion.alarm_s 25 30 changed" in settings
@@ -204,7 +204,7 @@ def _is_of_the_site(record: Record) -> bool:
     return isinstance(done, OperatorAction) and isinstance(done.action, SetPlan | SetAnchor)
 
 
-def test_without_plan_anchor_and_positions_it_says_so(tmp_path: Path) -> None:
+def test_missing_plan_anchor_and_positions_are_reported(tmp_path: Path) -> None:
     kept = [
         one
         for one in incident_records()
@@ -238,7 +238,7 @@ def test_a_damaged_log_is_reported_as_far_as_it_can_be_read(tmp_path: Path) -> N
     assert "Evacuate to everyone: North exit" in section(written, "Timeline")
 
 
-def test_of_an_erased_person_no_name_is_left(tmp_path: Path) -> None:
+def test_erased_person_is_not_named(tmp_path: Path) -> None:
     write_log(tmp_path, incident_records())
     station_app.rebuild(tmp_path, lambda _: None)
     station_app.forget(tmp_path, "p3", lambda _: None, lambda _: None)
@@ -269,7 +269,7 @@ def test_the_pdf_is_the_same_for_the_same_log_too(given: Path, tmp_path: Path) -
     assert pdf == (tmp_path / "other.pdf").read_bytes()
 
 
-def test_without_the_library_of_the_pdf_nothing_is_begun(
+def test_missing_pdf_library_is_reported_before_the_start(
     given: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "weasyprint", None)
@@ -281,15 +281,13 @@ def test_without_the_library_of_the_pdf_nothing_is_begun(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_positions_are_judged_where_that_is_wanted(given: Path, tmp_path: Path) -> None:
+def test_positions_are_assessed_on_request(given: Path, tmp_path: Path) -> None:
     assert "Not worked out" in section(_page(given, tmp_path / "a.html"), "Quality of positions")
     judged = section(_page(given, tmp_path / "b.html", "--assess"), "Quality of positions")
     assert re.search(r"Anna Vos \(FF-01\) \d+% \d+% \d+%", judged)
 
 
-def test_a_station_makes_the_same_report_in_a_process_of_its_own(
-    written: bytes, tmp_path: Path
-) -> None:
+def test_separate_process_makes_the_same_report(written: bytes, tmp_path: Path) -> None:
     write_log(tmp_path, incident_records())
     station_app.rebuild(tmp_path, lambda _: None)
     folder, prepared, damage = DataFolder(tmp_path), list[bool](), list[str]()

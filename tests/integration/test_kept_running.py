@@ -22,7 +22,7 @@ def received(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callab
         yield lambda: listening.recv(100).decode("ascii")
 
 
-def test_a_station_says_that_it_is_ready_and_goes_on_saying_that_it_works(
+def test_station_notifies_ready_and_watchdog(
     received: Callable[[], str], serve: Callable[..., Command]
 ) -> None:
     station = serve()
@@ -35,7 +35,7 @@ def test_a_station_says_that_it_is_ready_and_goes_on_saying_that_it_works(
 
 
 @pytest.mark.parametrize("source", ["simulated:straight", "ximu3:tcp://127.0.0.1:9"])
-def test_agent_is_ready_after_its_tracker_has_run_or_without_samples(
+def test_agent_notifies_ready_after_its_tracker_has_run_or_without_samples(
     received: Callable[[], str], tmp_path: Path, source: str
 ) -> None:
     """Until then it has all the time that it takes to compile the tracker."""

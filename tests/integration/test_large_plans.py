@@ -32,7 +32,7 @@ class _Reported(msgspec.Struct):
     units: list[_Shown] = []
 
 
-def test_positions_are_shown_while_a_plan_of_11_mb_is_laid(
+def test_positions_are_shown_while_a_plan_of_11_mb_is_loaded(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station, plan = serve(), large_plan(PLAN_BYTES)

@@ -54,25 +54,25 @@ def router(pki: PkiFolder, anna: Enrolment) -> Iterator[None]:
         yield
 
 
-def test_nothing_listens(anna: Enrolment, now: datetime) -> None:
+def test_closed_port_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     reported = why_no_link(anna.connect, anna.identity, now)
     assert "nothing listens on port" in reported
     assert "does the station run?" in reported
 
 
 @pytest.mark.usefixtures("router")
-def test_all_is_well(anna: Enrolment, now: datetime) -> None:
+def test_working_link_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     assert "the link should come by itself" in why_no_link(anna.connect, anna.identity, now)
 
 
 @pytest.mark.usefixtures("router")
-def test_the_station_belongs_to_another_authority(foreign: Enrolment, now: datetime) -> None:
+def test_station_of_another_authority_is_diagnosed(foreign: Enrolment, now: datetime) -> None:
     reported = why_no_link(foreign.connect, foreign.identity, now)
     assert "is not the one that enrolled this unit" in reported
 
 
 @pytest.mark.usefixtures("router")
-def test_the_station_does_not_know_the_authority(
+def test_certificate_of_an_unknown_authority_is_diagnosed(
     anna: Enrolment, foreign: Enrolment, now: datetime
 ) -> None:
     mixed = TlsIdentity(
@@ -84,7 +84,7 @@ def test_the_station_does_not_know_the_authority(
 
 
 @pytest.mark.usefixtures("router")
-def test_the_certificate_does_not_stand_for_the_address(anna: Enrolment, now: datetime) -> None:
+def test_certificate_without_the_address_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     unnamed = anna.connect[0].replace("127.0.0.1", "127.0.0.2")
     reported = why_no_link([unnamed], anna.identity, now)
     assert "does not stand for 127.0.0.2" in reported
@@ -92,7 +92,7 @@ def test_the_certificate_does_not_stand_for_the_address(anna: Enrolment, now: da
 
 
 @pytest.mark.usefixtures("router")
-def test_the_stations_clock_says_expired(pki: PkiFolder, now: datetime) -> None:
+def test_expired_certificate_is_diagnosed(pki: PkiFolder, now: datetime) -> None:
     then = now - timedelta(hours=20)  # since the authority's beginning, which is backdated
     old = PkiFolder(pki.path.parent, lambda: then).enroll("bert", valid=timedelta(hours=12))
     assert "expired on" in why_no_link(old.connect, old.identity, now)
@@ -100,23 +100,23 @@ def test_the_stations_clock_says_expired(pki: PkiFolder, now: datetime) -> None:
     assert "the station says" in why_no_link(old.connect, old.identity, behind)
 
 
-def test_the_clock_here_is_behind(anna: Enrolment, now: datetime) -> None:
+def test_own_clock_behind_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     reported = why_no_link(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
     assert "is not valid before" in reported
     assert "1970-01-01" in reported
 
 
 @pytest.mark.usefixtures("router")
-def test_no_enrolment_where_one_is_wanted(anna: Enrolment, now: datetime) -> None:
+def test_missing_enrolment_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     assert "wants an enrolment" in why_no_link(anna.connect, None, now)
 
 
-def test_a_name_that_nobody_knows(anna: Enrolment, now: datetime) -> None:
+def test_unknown_host_name_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     reported = why_no_link(["tls/station.invalid:7447"], anna.identity, now)
     assert "the name station.invalid is not known" in reported
 
 
-def test_something_else_listens(anna: Enrolment, now: datetime) -> None:
+def test_server_without_tls_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
         other.listen()

@@ -33,7 +33,7 @@ def until_linked(*routers: Router) -> None:
     until(linked, "they are linked", look_every_s=1.0)
 
 
-def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
+def test_linked_routers_are_not_reopened(tmp_path: Path) -> None:
     one, other = endpoint(), endpoint()
     with (
         closing(Router(tmp_path, (one,), (other,))) as first,
@@ -47,7 +47,7 @@ def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
         assert (first._bus, second._bus) == before
 
 
-def test_whether_the_other_one_listens_is_seen_whatever_else_its_end_of_the_bus_says() -> None:
+def test_open_endpoint_of_the_other_router_is_detected() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         end = f"tcp/127.0.0.1:{listening.getsockname()[1]}"
         assert accepts_connections((end,))
@@ -55,7 +55,7 @@ def test_whether_the_other_one_listens_is_seen_whatever_else_its_end_of_the_bus_
     assert not accepts_connections((f"{end}#iface=lo",))
 
 
-def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:
+def test_router_waits_for_an_absent_router(tmp_path: Path) -> None:
     with closing(Router(tmp_path, (endpoint(),), (endpoint(),))) as router:
         before = router._bus
         for _ in range(LOOKS):
@@ -63,7 +63,7 @@ def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:
         assert router._bus is before
 
 
-def test_a_router_whose_other_one_has_only_just_come_back_leaves_it_to_link(
+def test_router_gives_a_returned_router_time_to_link(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However long it was away: opened again just then, all its units would be away too."""
@@ -80,7 +80,7 @@ def test_a_router_whose_other_one_has_only_just_come_back_leaves_it_to_link(
             assert router._bus is before
 
 
-def test_a_router_whose_other_one_hangs_stays_open_for_its_units(tmp_path: Path) -> None:
+def test_router_beside_a_hanging_router_stays_open(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:  # takes links and never answers
         other = f"tcp/127.0.0.1:{listening.getsockname()[1]}"
         with closing(Router(tmp_path, (endpoint(),), (other,))) as router:
@@ -90,7 +90,7 @@ def test_a_router_whose_other_one_hangs_stays_open_for_its_units(tmp_path: Path)
             assert router._bus is before
 
 
-def test_a_router_opens_again_where_the_other_answers_and_there_is_no_link(
+def test_router_reopens_without_link_to_an_answering_router(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = endpoint()

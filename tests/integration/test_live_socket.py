@@ -88,9 +88,7 @@ async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
         assert again["incident"]["name"] == "kitchen"
 
 
-async def test_a_console_that_confirms_gets_what_came_meanwhile_as_one(
-    station: DeskStation, address: str
-) -> None:
+async def test_confirming_console_gets_merged_deltas(station: DeskStation, address: str) -> None:
     url, headers = f"ws://{address}/api/v1/live?deltas=fields", token_of(station)
     async with connect(url, additional_headers=headers) as slow:
         first = await received(slow)
@@ -132,7 +130,7 @@ async def test_messages_are_compressed_for_consoles_that_offer_it(
         assert await received(offering) == await received(plain)
 
 
-async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: str) -> None:
+async def test_browser_is_authenticated_by_its_cookie(station: DeskStation, address: str) -> None:
     async with httpx.AsyncClient(base_url=f"http://{address}") as browser:
         browser.headers["origin"] = f"http://{address}"
         credentials = {"username": "viewer", "password": PASSWORD}
@@ -147,12 +145,12 @@ async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: s
             pass
 
 
-async def test_without_a_login_there_is_a_code_for_it(address: str) -> None:
+async def test_connection_without_login_is_closed_with_its_code(address: str) -> None:
     async with connect(f"ws://{address}/api/v1/live") as console:
         assert await close_code(console) == live.NOT_LOGGED_IN
 
 
-async def test_with_a_generated_password_nothing_is_seen_before_it_is_changed(
+async def test_connection_before_the_password_change_is_closed(
     station: DeskStation, address: str
 ) -> None:
     accounts = station.services.accounts
@@ -169,7 +167,7 @@ async def test_with_a_generated_password_nothing_is_seen_before_it_is_changed(
 
 
 @pytest.mark.parametrize("path", ["live", "replays/none/live"])
-async def test_a_token_for_another_part_of_the_api_sees_nothing_live(
+async def test_token_of_another_scope_is_refused(
     station: DeskStation, address: str, path: str
 ) -> None:
     accounts, url = station.services.accounts, f"ws://{address}/api/v1/{path}"
@@ -184,7 +182,7 @@ async def test_a_token_for_another_part_of_the_api_sees_nothing_live(
                 assert await close_code(console) == code
 
 
-async def test_nothing_large_is_read_from_a_console(station: DeskStation, address: str) -> None:
+async def test_large_message_of_a_console_is_refused(station: DeskStation, address: str) -> None:
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
         await received(console)
@@ -192,7 +190,7 @@ async def test_nothing_large_is_read_from_a_console(station: DeskStation, addres
         assert await close_code(console) == 1009
 
 
-async def test_a_replay_that_is_not_there(station: DeskStation, address: str) -> None:
+async def test_unknown_replay_is_refused_with_its_code(station: DeskStation, address: str) -> None:
     url = f"ws://{address}/api/v1/replays/none/live"
     async with connect(url, additional_headers=token_of(station)) as console:
         assert await close_code(console) == live.NOT_FOUND
@@ -201,7 +199,7 @@ async def test_a_replay_that_is_not_there(station: DeskStation, address: str) ->
 @pytest.mark.parametrize(
     "message", ["hello", '{"type": "delta"}', '{"type": "shown"}', "[]", "{", b"\x00\x01"]
 )
-async def test_what_is_no_request_ends_the_connection(
+async def test_invalid_request_ends_the_connection(
     station: DeskStation, address: str, message: str | bytes
 ) -> None:
     url = f"ws://{address}/api/v1/live"
@@ -224,7 +222,7 @@ async def test_the_end_of_a_session_ends_its_socket(
         assert await close_code(console) == live.NOT_LOGGED_IN
 
 
-async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in(
+async def test_disk_failure_keeps_open_connections_and_refuses_new_ones(
     station: DeskStation,
     address: str,
     monkeypatch: pytest.MonkeyPatch,
@@ -253,7 +251,7 @@ async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in
     assert caplog.text.count("cannot be checked: the database") == 1
 
 
-async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
+async def test_console_that_stops_reading_is_disconnected(
     station: DeskStation, address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(live, "SEND_TIMEOUT_S", 0.5)

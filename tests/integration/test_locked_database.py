@@ -33,7 +33,7 @@ def maydays(browser: Browser) -> list[dict[str, Any]]:
     return [one for one in snapshot(browser)["alarms"] if one["rule"] == "mayday"]
 
 
-def test_people_are_answered_and_the_log_has_it_while_the_database_is_locked(
+def test_actions_are_answered_and_logged_while_the_database_is_locked(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station = serve()

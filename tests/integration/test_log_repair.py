@@ -90,7 +90,7 @@ def pair(tmp_path: Path) -> Iterator[HaController]:
 
 @pytest.mark.parametrize("at", [0.0, 0.3, 0.6, 0.99])
 @pytest.mark.parametrize("number", [0, 2])
-def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
+def test_damaged_segment_is_repaired_from_the_other_station(
     pair: HaController, number: int, at: float
 ) -> None:
     written = records()
@@ -108,7 +108,7 @@ def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
     assert pair.check.problems() == ()
 
 
-def test_a_segment_that_the_disk_does_not_even_open_comes_as_a_whole(pair: HaController) -> None:
+def test_unopenable_segment_is_replaced_from_the_other_station(pair: HaController) -> None:
     written = records()
     pair.write(written, written)
     path = pair.mine.segments()[1].path
@@ -120,7 +120,7 @@ def test_a_segment_that_the_disk_does_not_even_open_comes_as_a_whole(pair: HaCon
     assert pair.check.problems() == ()
 
 
-def test_a_log_is_not_filled_with_another_one_s(pair: HaController) -> None:
+def test_log_is_not_repaired_from_another_log(pair: HaController) -> None:
     pair.write(records(), records(luck=2))
     pair.damage(1, 0.3)
     pair.look_at_all()
@@ -131,7 +131,7 @@ def test_a_log_is_not_filled_with_another_one_s(pair: HaController) -> None:
     assert len(pair.check.problems()) == 1
 
 
-def test_one_that_cannot_be_mended_keeps_no_other_from_it(pair: HaController) -> None:
+def test_unrepairable_segment_does_not_prevent_other_repairs(pair: HaController) -> None:
     written = records()
     others = [(t_ns, key, b"another") if t_ns < T0 + 10**9 else (t_ns, key, payload)
               for t_ns, key, payload in written]  # fmt: skip
@@ -148,7 +148,7 @@ def test_one_that_cannot_be_mended_keeps_no_other_from_it(pair: HaController) ->
     assert pair.check.damaged == (pair.mine.segments()[0].path,)
 
 
-def test_of_two_that_follow_on_each_other_every_event_is_there_once(pair: HaController) -> None:
+def test_consecutive_repaired_segments_contain_every_event_once(pair: HaController) -> None:
     written = records()
     pair.write(written, written)
     for number in (1, 2):
@@ -161,7 +161,7 @@ def test_of_two_that_follow_on_each_other_every_event_is_there_once(pair: HaCont
     assert pair.check.problems() == ()
 
 
-def test_nothing_is_done_while_the_other_one_is_away(pair: HaController) -> None:
+def test_repair_waits_for_the_other_station(pair: HaController) -> None:
     pair.write(records(), records())
     pair.damage(1, 0.3)
     pair.look_at_all()

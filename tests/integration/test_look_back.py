@@ -39,7 +39,7 @@ def folder(tmp_path: Path, make_position) -> Path:
     return tmp_path
 
 
-def test_trails_are_smoothed_and_judged(folder: Path, tmp_path: Path) -> None:
+def test_trails_are_smoothed_and_assessed(folder: Path, tmp_path: Path) -> None:
     smoothed = CliRunner().invoke(app, ["smooth", "i1", "--data", str(folder)])
     assert smoothed.exit_code == 0, smoothed.output
     assert "FF-01" in smoothed.output
@@ -52,7 +52,7 @@ def test_trails_are_smoothed_and_judged(folder: Path, tmp_path: Path) -> None:
     assert unit["pin_residuals"][0]["note"] == "door"
 
 
-def test_an_incident_that_never_was_is_named(folder: Path) -> None:
+def test_unknown_incident_is_refused_with_the_known_ones(folder: Path) -> None:
     for command in ("smooth", "assess"):
         result = CliRunner().invoke(app, [command, "i9", "--data", str(folder)])
         assert isinstance(result.exception, UserError)

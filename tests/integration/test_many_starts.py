@@ -30,7 +30,7 @@ def reported_complete(station: LiveStation) -> int:
     return sum(boot.runs == ((1, MESSAGES),) for boot in station.reported.get(U, ()))
 
 
-def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
+def test_every_message_is_in_the_log_once_after_many_starts(
     tmp_path: Path,
 ) -> None:
     boot_ids = itertools.count(1)

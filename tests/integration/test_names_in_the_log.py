@@ -92,7 +92,7 @@ class Scene:
         return sum(one["acknowledged_ms"] is not None for one in sent["units"])
 
 
-def test_a_new_log_has_nobodys_name_in_any_record(
+def test_new_log_contains_no_name(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station = serve()

@@ -113,7 +113,9 @@ def desk(tmp_path: Path, make_position) -> Iterator[Desk]:
     desk.store.close()
 
 
-def test_a_process_makes_the_same_and_it_is_kept(desk: Desk, processes: ReplayProcesses) -> None:
+def test_process_computes_the_same_result_and_stores_it(
+    desk: Desk, processes: ReplayProcesses
+) -> None:
     post_processor = desk.beside(processes)
     report = post_processor.assess(desk.incident, {})
     made, raw = post_processor.smoothed(desk.incident), post_processor.raw(desk.incident)
@@ -126,7 +128,7 @@ def test_a_process_makes_the_same_and_it_is_kept(desk: Desk, processes: ReplayPr
     assert report == msgspec.structs.replace(again.report, made_ms=report.made_ms)
 
 
-def test_what_the_log_lacks_is_in_the_report(desk: Desk, processes: ReplayProcesses) -> None:
+def test_missing_segments_are_in_the_report(desk: Desk, processes: ReplayProcesses) -> None:
     """A segment that only the database knows, and one of another log."""
     known = KnownSegment("000007-20231114T221320Z.mcap", T0_NS, T0_NS + NS_PER_S, 10)
     with closing(SegmentWriter(desk.folder.path / "other")) as other:
@@ -144,9 +146,7 @@ def test_what_the_log_lacks_is_in_the_report(desk: Desk, processes: ReplayProces
     assert again.flaws == report.flaws
 
 
-def test_of_an_open_incident_it_is_reported_and_not_kept(
-    desk: Desk, processes: ReplayProcesses
-) -> None:
+def test_result_of_an_open_incident_is_not_stored(desk: Desk, processes: ReplayProcesses) -> None:
     is_open = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=desk.incident.opened_ns, closed_ns=None
     )
@@ -159,7 +159,7 @@ def test_of_an_open_incident_it_is_reported_and_not_kept(
     assert fractions[-1] == 1.0
 
 
-def test_beyond_its_memory_it_is_refused_in_plain_words_and_given_up(
+def test_excess_of_the_memory_limit_is_refused_and_not_retried(
     desk: Desk, processes: ReplayProcesses, caplog: pytest.LogCaptureFixture
 ) -> None:
     post_processor = desk.beside(processes, memory_mb=10)
@@ -194,7 +194,7 @@ class KilledAtWork(ReplayProcesses):
         return line
 
 
-def test_one_that_is_killed_is_reported_and_anyone_asks_again_gets_it(desk: Desk) -> None:
+def test_killed_process_is_reported_and_a_new_request_succeeds(desk: Desk) -> None:
     with KilledAtWork() as processes:
         post_processor = desk.beside(processes)
         with pytest.raises(StoreError, match="the process that did so has ended; ask again"):
@@ -219,7 +219,7 @@ class AtWork(ReplayProcesses):
         return FrameChannel(ours)
 
 
-def test_a_station_that_stops_does_not_wait_for_it(desk: Desk) -> None:
+def test_stopping_station_does_not_wait_for_post_processing(desk: Desk) -> None:
     processes, reported = AtWork(), list[str]()
     post_processor, incident = desk.beside(processes), desk.incident
 

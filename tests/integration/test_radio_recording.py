@@ -65,7 +65,7 @@ def largest_drift_s(log: RadioLog, from_ns: int, until_ns: int) -> float:
     return max(abs((onset_s - 1.0 + 1.0) % 2.0 - 1.0) for onset_s in found)
 
 
-def test_a_stream_is_recorded_at_its_time_over_every_failure(
+def test_stream_is_recorded_with_correct_times_over_failures(
     stream: AudioStream, tmp_path: Path
 ) -> None:
     log = RadioLog(tmp_path)
@@ -99,7 +99,7 @@ def test_a_stream_is_recorded_at_its_time_over_every_failure(
         assert largest_drift_s(log, *span) < DRIFT_MAX_S
 
 
-def test_a_sound_device_is_recorded_at_its_time(
+def test_sound_device_is_recorded_with_correct_times(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Through ALSA and ``arecord``, from a pipe in place of a card."""
@@ -138,7 +138,7 @@ def test_a_sound_device_is_recorded_at_its_time(
     assert largest_drift_s(log, begin_ns, voice_until_ns(log)) < DRIFT_MAX_S
 
 
-def test_a_file_is_played_again_and_again_in_real_time(tmp_path: Path) -> None:
+def test_file_is_repeated_in_real_time(tmp_path: Path) -> None:
     """Of two seconds, from an even one on: the pattern goes on over the rounds."""
     path = tmp_path / "exercise.wav"
     with wave.open(str(path), "wb") as file:
@@ -162,7 +162,7 @@ def test_a_file_is_played_again_and_again_in_real_time(tmp_path: Path) -> None:
     assert len(found) >= 4
 
 
-def test_a_source_that_cannot_be_recorded_is_reported(tmp_path: Path) -> None:
+def test_unusable_source_is_reported(tmp_path: Path) -> None:
     channel = RadioChannel(
         NAME, RadioConfig("device:there-is-none"), tmp_path / NAME, SystemClock()
     )

@@ -48,7 +48,7 @@ from tests.rig.waiting import PATIENCE_S
 SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)
 
 
-def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
+def test_last_stored_state_is_shown_read_only(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
 ) -> None:
     monkeypatch.setattr(module, "_SERVE_AFTER_S", 0.0)
@@ -130,7 +130,7 @@ class Nobody:
         pass
 
 
-def test_who_was_last_received_of_long_ago_in_this_incident_is_shown_where_that_was(
+def test_unit_received_long_ago_in_the_incident_is_shown_at_its_position(
     tmp_path: Path, clock: ManualClock
 ) -> None:
     """And an alarm that had been raised when somebody opened it."""
@@ -155,9 +155,7 @@ def test_who_was_last_received_of_long_ago_in_this_incident_is_shown_where_that_
         assert [one.text for one in picture.alarms] == ["MAYDAY"]
 
 
-def test_where_they_can_be_by_now_grows_while_nobody_is_received(
-    tmp_path: Path, clock: ManualClock
-) -> None:
+def test_uncertainty_grows_while_units_are_not_received(tmp_path: Path, clock: ManualClock) -> None:
     with ExitStack() as closing:
         recorder = Recorder(tmp_path, clock)
         closing.callback(recorder.close)
@@ -191,7 +189,7 @@ class Consoles:
         raise AssertionError("nothing here is live")
 
 
-def test_tables_that_cannot_be_read_for_a_while_end_no_start(
+def test_temporarily_unreadable_tables_do_not_end_the_start(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
 ) -> None:
     """The log has everything; what was last stored is shown once it can be read."""
@@ -264,7 +262,7 @@ def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
     assert stated == []
 
 
-def test_a_greeting_of_tls_under_way_leaves_nothing_behind_when_the_log_is_read(
+def test_unfinished_tls_handshake_is_closed_when_the_log_is_read(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(module, "_SERVE_AFTER_S", 0.0)

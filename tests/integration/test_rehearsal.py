@@ -57,9 +57,7 @@ def report(data: Path, out: Path, *options: str) -> RehearsalReport:
     return msgspec.json.decode(out.read_bytes(), type=RehearsalReport)
 
 
-def test_a_rehearsal_finds_what_a_station_with_those_thresholds_raises(
-    given: Path, tmp_path: Path
-) -> None:
+def test_rehearsal_equals_a_station_with_those_thresholds(given: Path, tmp_path: Path) -> None:
     found = report(given, tmp_path / "out.json", "--set", "no_motion.alarm_s=20")
     levels = {one.level: one for one in found.points[0].levels}
     alarm = levels["alarm"]
@@ -75,7 +73,7 @@ def test_a_rehearsal_finds_what_a_station_with_those_thresholds_raises(
     assert rehearsed_ms[0] == live.header.t_mono_ns // NS_PER_MS
 
 
-def test_a_sweep_leaves_out_what_contradicts_the_log(given: Path, tmp_path: Path) -> None:
+def test_sweep_skips_contradictory_thresholds(given: Path, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.json", tmp_path / "out.svg"
     found = report(given, out, "--sweep", "no_motion.alarm_s=5:70:5", "--picture", str(picture))
     possible = [one for one in found.points if not one.problem]
@@ -98,14 +96,12 @@ def test_a_sweep_leaves_out_what_contradicts_the_log(given: Path, tmp_path: Path
         (("--set", "no-motion.alarm_s=25", "--sweep", "no-motion.alarm_s=20:30:5"), "both|and by"),
     ],
 )
-def test_what_cannot_be_rehearsed_is_refused(
-    given: Path, options: tuple[str, ...], message: str
-) -> None:
+def test_invalid_rehearsal_is_refused(given: Path, options: tuple[str, ...], message: str) -> None:
     with pytest.raises(UserError, match=message):
         raise rehearse(given, *options).exception or AssertionError
 
 
-def test_the_whole_part_of_a_torn_log_is_rehearsed(tmp_path: Path) -> None:
+def test_intact_part_of_a_damaged_log_is_rehearsed(tmp_path: Path) -> None:
     write_log(tmp_path, incident(30.0).records)
     last = sorted((tmp_path / "log").glob("*.mcap"))[-1]
     content = last.read_bytes()

@@ -140,7 +140,7 @@ def end_of_run() -> Sequence[Message]:
     return weak_unit(boot_id=8)[:40]
 
 
-def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate() -> None:
+def test_unit_sends_raw_batches_at_the_channels_rate_and_no_positions() -> None:
     stated = weak_unit(one_by_one=True)
     itself = strong_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
@@ -155,7 +155,7 @@ def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate(
 
 
 @pytest.mark.parametrize("one_by_one", [False, True])
-def test_the_positions_are_those_of_a_unit_that_tracks_itself(air: Air, one_by_one: bool) -> None:
+def test_positions_equal_those_of_tracking_on_the_unit(air: Air, one_by_one: bool) -> None:
     air.send(weak_unit(one_by_one))
     air.send(end_of_run())
     itself = positions(strong_unit())
@@ -163,7 +163,7 @@ def test_the_positions_are_those_of_a_unit_that_tracks_itself(air: Air, one_by_o
     assert contents(air.track()) == contents(itself)
 
 
-def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
+def test_gap_in_the_raw_stream_is_flagged(air: Air) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
@@ -176,9 +176,7 @@ def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
 
 
 @pytest.mark.parametrize("lost", [slice(50, 51), slice(100, 400)])
-def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
-    air: Air, journal: Journal, lost: slice
-) -> None:
+def test_lost_samples_are_fetched_from_the_journal(air: Air, journal: Journal, lost: slice) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     air.keep(journal, stated)
@@ -190,9 +188,7 @@ def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
     assert air.source.fetched == len(missed)
 
 
-def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(
-    air: Air, journal: Journal
-) -> None:
+def test_late_batch_that_was_already_fetched_is_dropped(air: Air, journal: Journal) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     air.keep(journal, stated)
@@ -208,7 +204,7 @@ def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(
     assert (air.source.fetched, air.source.late) == (10, 10)
 
 
-def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Journal) -> None:
+def test_samples_missing_in_the_journal_stay_a_gap(air: Air, journal: Journal) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
@@ -220,7 +216,7 @@ def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Journal) 
     assert air.source.fetched == 0
 
 
-def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:
+def test_repeated_or_late_batch_is_dropped(air: Air) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     for message in stated:
@@ -232,7 +228,7 @@ def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:
     assert contents(air.track()) == contents(itself)
 
 
-def test_when_the_unit_starts_again_the_path_begins_anew_and_nothing_is_missed(air: Air) -> None:
+def test_restarted_unit_starts_a_new_complete_path(air: Air) -> None:
     second = weak_unit(boot_id=8)
     air.send(weak_unit())
     air.send(second[:40])
@@ -242,7 +238,7 @@ def test_when_the_unit_starts_again_the_path_begins_anew_and_nothing_is_missed(a
     assert contents(air.track()) == contents(first)
 
 
-def test_a_late_word_of_the_run_before_does_not_end_the_new_one(air: Air) -> None:
+def test_late_message_of_the_previous_run_does_not_end_the_new_one(air: Air) -> None:
     first, second = weak_unit(), weak_unit(boot_id=8)
     late = [message for message in first if isinstance(message, RawImu)][-1:]
     air.send(first[:-40])
@@ -254,7 +250,7 @@ def test_a_late_word_of_the_run_before_does_not_end_the_new_one(air: Air) -> Non
     assert contents(air.track()) == contents(positions(strong_unit()))
 
 
-def test_of_two_machines_under_one_name_the_newest_is_tracked_and_then_the_one_that_is_left(
+def test_newest_of_two_devices_is_tracked_and_then_the_remaining_one(
     air: Air,
 ) -> None:
     first, second = weak_unit(), weak_unit(boot_id=8)
@@ -286,7 +282,7 @@ def test_raw_samples_wait_for_the_description(air: Air) -> None:
     assert len(air.track()) > 50
 
 
-def test_a_run_that_ended_before_it_was_described_holds_up_none_after_it(air: Air) -> None:
+def test_run_without_description_does_not_delay_the_next_one(air: Air) -> None:
     undescribed = [message for message in weak_unit() if isinstance(message, RawImu)]
     air.send(undescribed[:60])
     air.send(weak_unit(boot_id=8))

@@ -67,7 +67,7 @@ def test_the_same_settings_give_the_same_trails_and_alarms(
     assert report.notes == ()
 
 
-def test_another_tracker_gives_another_trail(given: Given, tmp_path: Path) -> None:
+def test_other_tracker_gives_another_trail(given: Given, tmp_path: Path) -> None:
     report = given.rerun(tmp_path / "out", "--tracker", "huang")
     first = report.trails[0]
     assert (report.tracker, first.tracker) == ("huang", "huang")
@@ -79,7 +79,7 @@ def test_another_tracker_gives_another_trail(given: Given, tmp_path: Path) -> No
     assert "Person 0 (FF-01)" in page
 
 
-def test_a_re_run_goes_on_from_what_was_tracked(
+def test_interrupted_rerun_continues_from_finished_parts(
     given: Given, same: tuple[Path, RerunReport]
 ) -> None:
     out, report = same
@@ -91,9 +91,7 @@ def test_a_re_run_goes_on_from_what_was_tracked(
     assert sum(again[path] == logs[path] for path in logs) == len(logs) - 1
 
 
-def test_a_recording_that_begins_late_goes_on_from_the_recorded_path(
-    given: Given, tmp_path: Path
-) -> None:
+def test_late_recording_continues_the_recorded_path(given: Given, tmp_path: Path) -> None:
     """Of what a station pulls, the begin of the boot is often not there."""
     late = tmp_path / "FF-01" / "boot"
     shutil.copytree(given.boot("FF-01"), late)
@@ -112,7 +110,7 @@ def test_a_recording_that_begins_late_goes_on_from_the_recorded_path(
     assert any(note.startswith("FF-02 has no raw recording") for note in report.notes)
 
 
-def test_a_tracker_that_cannot_be_leaves_no_result(given: Given, tmp_path: Path) -> None:
+def test_unknown_tracker_leaves_no_result(given: Given, tmp_path: Path) -> None:
     recording = ("--recording", str(given.boot("FF-01")), "--out", str(tmp_path / "out"))
     with pytest.raises(UserError, match="no tracker 'eskv'"):
         raise rerun(given.station, *recording, "--tracker", "eskv").exception or AssertionError

@@ -79,7 +79,7 @@ def test_enrolling_and_revoking_take_effect_while_it_runs(
     assert received == [KEY]
 
 
-def test_revoking_one_leaves_the_links_of_the_others_as_they_are(
+def test_revocation_keeps_the_links_of_others(
     process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     enrolments = [pki.enroll(name) for name in ("anna", "ben")]
@@ -98,7 +98,7 @@ def test_revoking_one_leaves_the_links_of_the_others_as_they_are(
             assert len(held) == 2
 
 
-def test_a_killed_router_is_started_again(
+def test_killed_router_is_restarted(
     process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     with closing(station(pki, listen)) as base, closing(unit(pki.enroll("anna"))) as anna:
@@ -109,13 +109,13 @@ def test_a_killed_router_is_started_again(
         until(lambda: process.pid != first and anna.has_subscriber(KEY), "everything again")
 
 
-def test_closing_ends_it(process: RouterProcess) -> None:
+def test_closed_router_process_ends(process: RouterProcess) -> None:
     assert psutil.pid_exists(process.pid)
     process.close()
     assert not psutil.pid_exists(process.pid)
 
 
-def test_it_ends_when_its_parent_is_killed(
+def test_router_ends_when_its_parent_is_killed(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     script = (
@@ -135,7 +135,7 @@ def test_it_ends_when_its_parent_is_killed(
 
 
 @pytest.mark.parametrize("endpoint", ["tcp/127.0.0.1:{port}", "tcp/no such host:{port}"])
-def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
+def test_router_ends_silently_when_its_parent_was_killed_before_it_opened(
     tmp_path: Path, endpoint: str
 ) -> None:
     reported = tmp_path / "said.txt"
@@ -158,14 +158,14 @@ def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
     assert "Broken" not in reported.read_text()
 
 
-def test_one_that_gets_no_settings_ends_in_order() -> None:
+def test_router_without_settings_ends_normally() -> None:
     with start_loading() as loading:
         assert loading.stdin is not None
         loading.stdin.close()
         assert loading.wait(PATIENCE_S) == 0
 
 
-def test_one_that_has_loaded_before_is_the_first(
+def test_preloaded_router_is_used_first(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     loading = start_loading()
@@ -173,7 +173,7 @@ def test_one_that_has_loaded_before_is_the_first(
         assert running.pid == loading.pid
 
 
-def test_one_that_ended_while_it_loaded_is_stated(
+def test_router_that_ended_during_loading_is_reported(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     loading = start_loading()
@@ -183,12 +183,12 @@ def test_one_that_ended_while_it_loaded_is_stated(
         RouterProcess(tmp_path, listen, loading=loading).wait_open()
 
 
-def test_what_keeps_it_from_opening_is_stated(tmp_path: Path, listen: tuple[str, ...]) -> None:
+def test_reason_for_not_opening_is_reported(tmp_path: Path, listen: tuple[str, ...]) -> None:
     with pytest.raises(BusError, match="no certificate authority; make one with `muster pki init`"):
         RouterProcess(tmp_path, listen).wait_open()
 
 
-def test_a_taken_port_is_stated_and_nothing_else(
+def test_port_in_use_is_reported_without_a_crash(
     process: RouterProcess,
     tmp_path: Path,
     listen: tuple[str, ...],
@@ -234,7 +234,7 @@ def test_a_renewed_station_certificate_is_taken_up(
         until(lambda: bus.has_subscriber(KEY), "the right to speak, to the renewed station")
 
 
-def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) -> None:
+def test_plain_tcp_works_when_configured(tmp_path: Path, address: str) -> None:
     plain = (f"tcp/{address}",)
     with (
         closing(RouterProcess(tmp_path, plain).wait_open()),
@@ -245,7 +245,9 @@ def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) ->
         until(lambda: bus.has_subscriber(KEY), "the station's interest")
 
 
-def test_plain_and_secure_do_not_mix(tmp_path: Path, listen: tuple[str, ...]) -> None:
+def test_plain_and_secure_endpoints_together_are_refused(
+    tmp_path: Path, listen: tuple[str, ...]
+) -> None:
     with pytest.raises(ConfigError, match="either secure or not"):
         Router(tmp_path, (*listen, "tcp/127.0.0.1:1"))
 
@@ -259,7 +261,7 @@ def test_the_station_finds_its_router_on_the_loopback(tmp_path: Path) -> None:
         assert station_endpoint(tmp_path, listen).connect == (found,)
 
 
-def test_a_station_that_its_own_certificate_keeps_out_is_reported_at_once(tmp_path: Path) -> None:
+def test_station_certificate_without_its_address_is_reported_at_once(tmp_path: Path) -> None:
     pki = PkiFolder(tmp_path)
     pki.create("Test", hosts=["192.0.2.7", "Station.local", "fd00::7"], connect=[])
     for host in ("0.0.0.0", "[::]", "192.0.2.7", "station.LOCAL", "[fd00:0::7]", "localhost"):
@@ -270,14 +272,14 @@ def test_a_station_that_its_own_certificate_keeps_out_is_reported_at_once(tmp_pa
 
 
 @pytest.mark.parametrize("option", ["iface=no-such-one", "rubbish=1", "iface=lo;rubbish=1"])
-def test_an_option_of_the_endpoint_that_cannot_be_kept_is_stated(
+def test_unsupported_endpoint_option_is_reported(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...], option: str
 ) -> None:
     with pytest.raises(MusterError, match=r"cannot listen on|only #iface=INTERFACE"):
         Router(tmp_path, (f"{listen[0]}#{option}",))
 
 
-def test_it_listens_on_one_interface_where_that_is_asked_for(
+def test_router_listens_on_the_configured_interface_only(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     anna = pki.enroll("anna")

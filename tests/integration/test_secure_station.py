@@ -85,7 +85,7 @@ def test_a_unit_is_enrolled_and_revoked_while_the_station_runs(
     assert station.stop() == 0
 
 
-def test_what_ends_soon_is_among_the_problems(
+def test_expiring_certificates_are_among_the_problems(
     serve: Callable[..., Command], pki: PkiFolder, data: Path
 ) -> None:
     pki.enroll("FF-01", valid=timedelta(days=3))
@@ -101,7 +101,7 @@ def test_what_ends_soon_is_among_the_problems(
         )
 
 
-def test_a_station_takes_its_renewed_certificate_up_before_the_old_one_ends(
+def test_station_loads_its_renewed_certificate_before_the_old_one_expires(
     serve: Callable[..., Command], pki: PkiFolder, data: Path, make_position: MakePosition
 ) -> None:
     """Or it would hear nobody from then on, with everything in order by its folder."""
@@ -122,7 +122,7 @@ def test_a_station_takes_its_renewed_certificate_up_before_the_old_one_ends(
     assert station.stop() == 0
 
 
-def test_without_an_authority_the_station_says_how_to_make_one(
+def test_station_without_an_authority_names_the_remedy(
     serve: Callable[..., Command], data: Path
 ) -> None:
     station = serve()
@@ -151,7 +151,7 @@ def test_the_console_can_be_served_with_the_stations_certificate(
         httpx.get(health, timeout=PATIENCE_S)
 
 
-def test_a_station_whose_certificate_has_ended_says_so_at_once(
+def test_station_with_an_expired_certificate_is_refused_at_the_start(
     serve: Callable[..., Command], data: Path
 ) -> None:
     address = f"tls/127.0.0.1:{free_port()}"

@@ -21,7 +21,7 @@ from tests.rig.waiting import until
 U = "FF-01"
 
 
-def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> None:
+def test_par_request_is_delivered_and_answered(tmp_path: Path) -> None:
     data, listen = tmp_path / "station", f"tls/127.0.0.1:{free_port()}"
     pki = PkiFolder(data)
     pki.create("Test", hosts=[], connect=[listen])

@@ -83,7 +83,7 @@ def test_a_past_incident_is_replayed_in_the_console(
     assert station.stop() == 0
 
 
-def test_a_running_station_replays_in_processes_of_its_own(
+def test_running_station_replays_in_separate_processes(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     """One for each replay, which ends with it."""
@@ -206,7 +206,7 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
         assert incident_id in replaying.output()
 
 
-def test_an_incident_that_is_open_is_replayed_to_what_was_recorded_last(tmp_path: Path) -> None:
+def test_open_incident_is_replayed_to_its_last_record(tmp_path: Path) -> None:
     """The station died in it, or its clock is another than that of the machine that replays."""
     script, data = Script(), tmp_path / "station"
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -227,7 +227,7 @@ def test_an_incident_that_is_open_is_replayed_to_what_was_recorded_last(tmp_path
     assert replay["end_ms"] == script.t_ns // NS_PER_MS
 
 
-def test_rebuilding_gives_the_same_tables(
+def test_rebuild_gives_the_same_tables(
     serve: Callable[..., Command],
     tmp_path: Path,
     data: Path,

@@ -34,7 +34,7 @@ from tests.rig.station_process import free_port
 from tests.rig.waiting import PATIENCE_S, until
 
 
-def test_after_a_kill_the_live_state_comes_back_from_the_log(
+def test_live_state_is_restored_from_the_log_after_a_kill(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station = serve()
@@ -72,7 +72,7 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
     assert again.stop() == 0
 
 
-def test_a_station_that_is_asked_to_stop_leaves_everything_in_order(
+def test_stopped_station_closes_its_log(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station = serve()
@@ -118,7 +118,7 @@ def test_a_port_in_use_is_named(tmp_path: Path, taken: str) -> None:
             assert "Traceback" not in station.output()
 
 
-def test_plain_connections_from_elsewhere_must_be_asked_for(tmp_path: Path) -> None:
+def test_plain_remote_connections_need_an_option(tmp_path: Path) -> None:
     with Command(
         tmp_path / "output.txt",
         *("serve", "--data", str(tmp_path / "data"), "--listen", "tcp/0.0.0.0:7447"),
@@ -127,7 +127,7 @@ def test_plain_connections_from_elsewhere_must_be_asked_for(tmp_path: Path) -> N
         assert "--insecure" in station.output()
 
 
-def test_what_cannot_be_read_is_counted_and_kept(
+def test_unreadable_message_is_counted_and_kept(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
     station = serve()
@@ -181,7 +181,7 @@ def test_users_are_added_while_the_station_runs(
     assert station.stop() == 0
 
 
-def test_over_tls_the_cookie_never_leaves_it(
+def test_cookie_over_tls_is_secure_only(
     serve: Callable[..., Command], tmp_path: Path, data: Path
 ) -> None:
     now, day = datetime.now(UTC), timedelta(days=1)

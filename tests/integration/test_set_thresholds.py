@@ -29,7 +29,7 @@ def fusers_set_in(browser: Browser) -> list[str]:
     return set_[::-1]
 
 
-def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
+def test_changed_thresholds_apply_and_are_audited_once(
     serve: Callable[..., Command],
     tmp_path: Path,
     data: Path,
@@ -79,7 +79,7 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
         ),
     ],
 )
-def test_a_setting_that_makes_no_sense_starts_no_station(
+def test_invalid_setting_is_refused_at_the_start(
     serve: Callable[..., Command], tmp_path: Path, data: Path, toml: str, problem: str
 ) -> None:
     settings = tmp_path / "station.toml"

@@ -105,7 +105,7 @@ def replayed(browser: Browser, incident_id: str) -> dict[str, Any]:
     }
 
 
-def test_two_incidents_at_once(
+def test_two_open_incidents_have_separate_members(
     serve: Callable[..., Command], data: Path, units: list[Unit], make_position: MakePosition
 ) -> None:
     station = serve()

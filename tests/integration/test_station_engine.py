@@ -67,7 +67,7 @@ def test_a_message_becomes_a_log_record_a_row_and_a_card(
     assert FUSED.key(STATION_ID) in keys
 
 
-def test_who_asked_for_a_picture_that_could_not_be_made_gets_the_next(
+def test_failed_snapshot_request_is_answered_with_the_next_snapshot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The hub asks once and waits: forgotten, no console would be shown anything again."""
@@ -85,7 +85,7 @@ def test_who_asked_for_a_picture_that_could_not_be_made_gets_the_next(
     assert len(tried) == 2
 
 
-def test_what_came_live_while_it_was_fetched_is_in_the_log_once(tmp_path: Path) -> None:
+def test_message_received_live_during_backfill_is_logged_once(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.publish(mayday(1))
@@ -104,7 +104,7 @@ def stated_keys(station: LiveStation) -> list[str]:
     return [key for _, key, _ in station.log.records() if key.endswith(EVENT.suffix)]
 
 
-def test_what_is_replayed_is_in_the_log_once_and_counted_even_after_a_restart(
+def test_repeated_message_is_logged_once_and_counted_after_a_restart(
     tmp_path: Path,
 ) -> None:
     with LiveStation(tmp_path) as station:
@@ -137,7 +137,7 @@ def test_deltas_are_numbered_and_a_snapshot_carries_the_last_number(
     assert reported[:seq] == list(range(1, seq + 1))
 
 
-def test_opening_an_incident_or_a_plan_begins_the_picture_again(tmp_path: Path) -> None:
+def test_new_incident_or_plan_sends_a_snapshot(tmp_path: Path) -> None:
     plan = b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}'
     with LiveStation(tmp_path) as station:
         station.act(OpenIncident("i1", "Mill Lane"))
@@ -155,7 +155,7 @@ def test_opening_an_incident_or_a_plan_begins_the_picture_again(tmp_path: Path) 
     assert bytes(last.plan or b"") == plan
 
 
-def test_nobody_speaks_as_the_station(tmp_path: Path) -> None:
+def test_forged_action_of_the_station_is_refused_and_an_alarm(tmp_path: Path) -> None:
     """A forged action on the bus has no effect, is not logged as one, and raises an alarm."""
     forged = OperatorAction(Header(STATION_ID, 1, 1, 0), "x", "mallory", CloseIncident("i1"))
     with LiveStation(tmp_path) as station:
@@ -177,7 +177,7 @@ def test_undecodable_bytes_are_kept_counted_and_shown(tmp_path: Path) -> None:
         assert {b"\xff\xffrubbish", b"x"} <= {p for _, _, p in station.log.records()}
 
 
-def test_a_store_that_fails_is_an_alarm_and_tracking_goes_on(
+def test_failing_store_is_an_alarm_and_tracking_continues(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
     with LiveStation(tmp_path) as station:
@@ -191,7 +191,7 @@ def test_a_store_that_fails_is_an_alarm_and_tracking_goes_on(
         until(lambda: not station.pipeline.state.problems)
 
 
-def test_after_a_crash_the_live_state_comes_back_from_the_log(
+def test_live_state_is_restored_from_the_log_after_a_crash(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
     first = LiveStation(tmp_path)
@@ -214,7 +214,7 @@ def test_after_a_crash_the_live_state_comes_back_from_the_log(
     assert [a.alarm_id for a in after.alarms] == [a.alarm_id for a in before.alarms]
 
 
-def test_decisions_that_a_crash_kept_from_the_log_are_written_after_it(
+def test_decisions_missing_in_the_log_after_a_crash_are_written(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
     with LiveStation(tmp_path / "whole") as station:
@@ -233,7 +233,7 @@ def test_decisions_that_a_crash_kept_from_the_log_are_written_after_it(
     torn.close()
 
 
-def test_an_orderly_restart_needs_no_more_than_the_checkpoint(
+def test_normal_restart_needs_only_the_checkpoint(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
     with LiveStation(tmp_path) as first:
@@ -248,7 +248,7 @@ def test_an_orderly_restart_needs_no_more_than_the_checkpoint(
     assert list(compare(second.log.records(), make_pipeline())) == []
 
 
-def test_an_action_after_the_end_is_refused_and_not_forgotten(tmp_path: Path) -> None:
+def test_action_after_the_shutdown_is_refused(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         pass
     with pytest.raises(StoreError):
@@ -259,7 +259,9 @@ class Killed(Exception):  # noqa: N818  # it is no error
     """While the log is being read."""
 
 
-def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: Path) -> None:
+def test_start_after_a_kill_during_a_long_rebuild_continues_from_a_checkpoint(
+    tmp_path: Path,
+) -> None:
     script = Script()
     script.register(U)
     for minute in range(30):
@@ -295,7 +297,7 @@ def test_a_kill_while_a_long_log_is_read_costs_the_last_minutes_of_it(tmp_path: 
     second.close()
 
 
-def test_what_many_events_cost_at_a_start_they_do_not_cost_at_the_next(
+def test_rebuild_of_many_events_is_done_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However soon a station is killed after it has started."""
@@ -356,7 +358,7 @@ class Pressing:
 
 
 @pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
-def test_a_mayday_that_came_while_person_dealt_with_another_is_raised(
+def test_mayday_received_during_the_handling_of_another_is_raised(
     tmp_path: Path, dealt_with: Callable[[str], Action]
 ) -> None:
     clock = ManualClock(utc_ns=1_700_000_000 * NS_PER_S)

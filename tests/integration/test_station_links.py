@@ -40,7 +40,7 @@ def shown_link(station: LiveStation) -> str:
     return next(unit.link for unit in station.snapshot().units if unit.unit_id == U)
 
 
-def test_a_link_that_is_gone_is_shown_and_logged_long_before_silence_tells_it(
+def test_lost_link_is_shown_before_the_silence_timeout(
     tmp_path: Path, make_position: MakePosition
 ) -> None:
     with LiveStation(tmp_path) as station:
@@ -55,7 +55,7 @@ def test_a_link_that_is_gone_is_shown_and_logged_long_before_silence_tells_it(
         until(lambda: shown_link(station) == "live")
 
 
-def test_links_that_go_one_after_the_other_do_not_stop_the_time_of_the_station(
+def test_successive_lost_links_do_not_stop_the_stations_time(
     tmp_path: Path,
 ) -> None:
     """Each is told by a tick that comes early; the next one comes when it would have come."""
@@ -68,9 +68,7 @@ def test_links_that_go_one_after_the_other_do_not_stop_the_time_of_the_station(
         until(lambda: len(ticks(station)) > before, "time goes on", 3.0)
 
 
-def test_links_that_come_and_go_all_the_time_make_few_ticks(
-    tmp_path: Path, make_position: MakePosition
-) -> None:
+def test_flapping_links_cause_few_ticks(tmp_path: Path, make_position: MakePosition) -> None:
     """Each is stepped and written, and costs what a second of all units does."""
     seconds = 2.0
     with LiveStation(tmp_path) as station:
@@ -85,7 +83,7 @@ def test_links_that_come_and_go_all_the_time_make_few_ticks(
         assert len(ticks(station)) < seconds * 8
 
 
-def test_a_unit_that_holds_its_link_and_says_nothing_is_asked_for_its_journal(
+def test_silent_unit_with_a_link_is_asked_for_its_journal(
     tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Over a link that live data does not get through, say: it is not waited for."""

@@ -57,7 +57,7 @@ def station(tmp_path: Path, make_position: MakePosition) -> Iterator[Station]:
     station.recorder.close()
 
 
-def test_who_is_there_is_not_called_lost_and_who_is_not_is(station: Station) -> None:
+def test_pause_of_the_station_marks_only_missing_units_lost(station: Station) -> None:
     station.turns(5.0, "FF-01", "FF-02")
     station.clock.advance(50.0)
     station.turns(1.0)  # links come back
@@ -65,7 +65,7 @@ def test_who_is_there_is_not_called_lost_and_who_is_not_is(station: Station) -> 
     assert station.lost() == {"FF-02": AlarmState.RAISED}
 
 
-def test_time_goes_on_though_it_stands_still_again_and_again(station: Station) -> None:
+def test_time_advances_over_repeated_pauses(station: Station) -> None:
     station.turns(5.0, "FF-01")
     for _ in range(4):
         station.clock.advance(10.0)

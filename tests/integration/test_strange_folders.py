@@ -56,7 +56,7 @@ def incidents(data: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("left", [None, b""])
-def test_a_database_that_is_gone_or_empty_is_made_again(tmp_path: Path, left: bytes | None) -> None:
+def test_missing_or_empty_database_is_rebuilt(tmp_path: Path, left: bytes | None) -> None:
     record(tmp_path, "Mill Lane")
     if left is not None:
         (tmp_path / "station.sqlite").write_bytes(left)
@@ -76,9 +76,7 @@ def test_a_database_that_is_gone_or_empty_is_made_again(tmp_path: Path, left: by
         assert "MadeDatabaseAgain" in [one.action for one in disk.records.audit_entries(EVER)]
 
 
-def test_what_was_cut_short_while_it_was_made_is_made_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_interrupted_rebuild_is_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     record(tmp_path, "Mill Lane")
 
     def killed(*_: object) -> int:
@@ -96,7 +94,7 @@ def rebuild(data: Path) -> None:
     station_folder.rebuild(data, lambda _: None)
 
 
-def test_a_log_that_is_not_cut_in_the_end_leaves_nothing_of_it_unknown(
+def test_failed_truncation_of_the_log_keeps_the_database_complete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     record(tmp_path, "Mill Lane")
@@ -111,7 +109,7 @@ def test_a_log_that_is_not_cut_in_the_end_leaves_nothing_of_it_unknown(
     assert incidents(tmp_path) == ["Mill Lane"]
 
 
-def test_the_database_of_another_log_is_refused_and_kept(tmp_path: Path) -> None:
+def test_database_of_another_log_is_refused_and_kept(tmp_path: Path) -> None:
     one, other = tmp_path / "one", tmp_path / "other"
     for data, name in ((one, "Mill Lane"), (other, "Dock Road West")):
         record(data, name)
@@ -124,7 +122,7 @@ def test_the_database_of_another_log_is_refused_and_kept(tmp_path: Path) -> None
     assert incidents(other) == ["Dock Road West"]
 
 
-def test_a_log_of_which_old_segments_were_moved_away_is_no_other(tmp_path: Path) -> None:
+def test_log_without_old_segments_keeps_its_database(tmp_path: Path) -> None:
     record(tmp_path, "Mill Lane")
     record(tmp_path, "Dock Road West")
     before = incidents(tmp_path)
@@ -165,7 +163,7 @@ def set_aside(data: Path) -> list[Path]:
 
 
 @pytest.mark.parametrize("table", ["incidents", "audit"])
-def test_what_can_be_read_of_a_damaged_database_is_kept(served: Path, table: str) -> None:
+def test_readable_rows_of_a_damaged_database_are_kept(served: Path, table: str) -> None:
     spoil(served, table)
     damaged = (served / "station.sqlite").read_bytes()
     stated: list[str] = []
@@ -183,7 +181,7 @@ def test_what_can_be_read_of_a_damaged_database_is_kept(served: Path, table: str
     assert len(set_aside(served)) == 1
 
 
-def test_who_loses_the_table_of_users_is_reported_how_to_get_in(served: Path) -> None:
+def test_loss_of_the_table_of_users_is_reported_with_the_way_to_log_in(served: Path) -> None:
     with opened(served) as disk:
         disk.accounts.add_token("mia", "wall", Role.VIEWER, None)
         assert disk.accounts.log_in("mia", "something long enough")
@@ -201,9 +199,7 @@ def test_who_loses_the_table_of_users_is_reported_how_to_get_in(served: Path) ->
 
 
 @pytest.mark.parametrize("damage", [shorten, zero])
-def test_a_database_of_which_nothing_can_be_read_is_made_again(
-    served: Path, damage: Callable[[Path], None]
-) -> None:
+def test_unreadable_database_is_rebuilt(served: Path, damage: Callable[[Path], None]) -> None:
     damage(served)
     with opened(served) as disk:
         assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
@@ -211,9 +207,7 @@ def test_a_database_of_which_nothing_can_be_read_is_made_again(
     assert len(set_aside(served)) == 1
 
 
-def test_a_salvage_that_is_cut_short_is_gone_on_with(
-    served: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_interrupted_salvage_is_continued(served: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil(served, "incidents")
 
     def killed(*_: object) -> Path:
@@ -232,7 +226,7 @@ def test_a_salvage_that_is_cut_short_is_gone_on_with(
     }
 
 
-def test_damage_that_is_met_later_is_stated_and_rebuilding_mends_it(served: Path) -> None:
+def test_damage_found_while_running_is_reported_and_repaired_by_a_rebuild(served: Path) -> None:
     with opened(served) as disk:
         spoil(served, "units")
         assert isinstance(disk.store, Store)
@@ -249,7 +243,7 @@ def test_damage_that_is_met_later_is_stated_and_rebuilding_mends_it(served: Path
         assert disk.store.problem == ""
 
 
-def test_a_past_beside_a_damaged_database_is_read_from_the_log(served: Path) -> None:
+def test_past_incident_beside_a_damaged_database_is_read_from_the_log(served: Path) -> None:
     spoil(served, "incidents")
     stated: list[str] = []
     with ExitStack() as closing_:

@@ -53,7 +53,7 @@ def sides(tmp_path: Path) -> Iterator[tuple[HaMode, HaMode]]:
         yield HaMode(folders[0], one), HaMode(folders[1], other)
 
 
-def test_a_user_of_a_removed_one_s_name_has_none_of_that_one_s_logins(
+def test_new_user_of_a_removed_name_has_none_of_its_logins(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
@@ -68,7 +68,7 @@ def test_a_user_of_a_removed_one_s_name_has_none_of_that_one_s_logins(
     assert standby.accounts.of_session(session) is None
 
 
-def test_the_same_people_log_in_with_the_same_passwords_tokens_and_sessions(
+def test_logins_tokens_and_sessions_are_replicated(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
@@ -83,7 +83,7 @@ def test_the_same_people_log_in_with_the_same_passwords_tokens_and_sessions(
     assert standby.accounts.log_in("ada", "wrong password") is None
 
 
-def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[HaMode, HaMode]) -> None:
+def test_ended_logins_are_replicated_and_own_logins_kept(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -98,9 +98,7 @@ def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[HaMode, H
 
 
 @pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
-def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
-    sides: tuple[HaMode, HaMode], how: str
-) -> None:
+def test_revoked_access_is_revoked_at_both_stations(sides: tuple[HaMode, HaMode], how: str) -> None:
     active, standby = sides
     active.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -124,7 +122,7 @@ def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
 
 @pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
-def test_who_was_shut_out_at_one_that_leads_no_more_is_shut_out_at_both(
+def test_access_revoked_by_a_former_leader_is_revoked_at_both(
     sides: tuple[HaMode, HaMode], how: str, first: str
 ) -> None:
     """Whichever of the two hears of the other first."""
@@ -154,7 +152,7 @@ def test_who_was_shut_out_at_one_that_leads_no_more_is_shut_out_at_both(
 
 
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
-def test_a_token_a_role_and_a_person_that_one_took_away_alone_are_gone_at_both(
+def test_removals_by_one_station_alone_apply_at_both(
     sides: tuple[HaMode, HaMode], first: str
 ) -> None:
     leads, follows = apart = sides
@@ -179,7 +177,7 @@ def test_a_token_a_role_and_a_person_that_one_took_away_alone_are_gone_at_both(
 
 
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
-def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
+def test_later_of_two_new_passwords_is_valid_alone(
     sides: tuple[HaMode, HaMode], first: str
 ) -> None:
     leads, follows = apart = sides
@@ -197,7 +195,7 @@ def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
         assert one.accounts.log_in("ada", "the later battery") is not None
 
 
-def test_person_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[HaMode, HaMode]) -> None:
+def test_new_user_of_a_removed_name_is_kept(sides: tuple[HaMode, HaMode]) -> None:
     leads, follows = sides
     follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
     follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -211,7 +209,7 @@ def test_person_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[HaMode,
         assert one.accounts.log_in("ada", "another battery") is not None
 
 
-def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[HaMode, HaMode]) -> None:
+def test_used_ticket_stays_used(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -227,7 +225,7 @@ def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[HaMode, HaMode]
     assert active.accounts.take_over(ticket) is None
 
 
-def test_a_login_that_ended_while_the_other_was_off_is_over_there_too(
+def test_login_ended_while_the_other_was_off_ends_there(
     sides: tuple[HaMode, HaMode], tmp_path: Path
 ) -> None:
     active, standby = sides
@@ -251,7 +249,7 @@ def meet(leads: HaMode, follows: HaMode, first: str) -> None:
     follows.copy(leads)
 
 
-def test_a_login_goes_on_at_the_other_station_once(sides: tuple[HaMode, HaMode]) -> None:
+def test_login_is_transferred_to_the_other_station_once(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -273,7 +271,7 @@ def test_a_login_goes_on_at_the_other_station_once(sides: tuple[HaMode, HaMode])
     assert active.accounts.take_over(last) is None
 
 
-def test_a_ticket_and_what_it_gave_end(sides: tuple[HaMode, HaMode]) -> None:
+def test_ticket_and_its_session_expire(sides: tuple[HaMode, HaMode]) -> None:
     active, _ = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     session = active.accounts.log_in("ada", PASSWORD)
@@ -290,7 +288,9 @@ def test_a_ticket_and_what_it_gave_end(sides: tuple[HaMode, HaMode]) -> None:
     assert active.accounts.of_session(went_on) is None
 
 
-def test_who_was_only_here_goes_and_is_named(sides: tuple[HaMode, HaMode]) -> None:
+def test_local_entries_missing_at_the_leader_are_removed_and_reported(
+    sides: tuple[HaMode, HaMode],
+) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
     standby.accounts.add_user("mallory", PASSWORD, Role.ADMINISTRATOR)
@@ -341,7 +341,7 @@ LOST = ("users", "api_tokens", "people", "base_map", "audit")
 
 
 @pytest.mark.parametrize("loser", ["who leads", "who follows"])
-def test_what_one_has_lost_with_its_database_comes_back_from_the_other(
+def test_lost_tables_are_restored_from_the_other_station(
     tmp_path: Path, sides: tuple[HaMode, HaMode], loser: str
 ) -> None:
     had = sides[0]
@@ -376,7 +376,7 @@ def test_what_one_has_lost_with_its_database_comes_back_from_the_other(
     assert "user" in reported
 
 
-def test_what_a_leader_has_lost_stays_at_the_standby_though_it_never_received_of_it(
+def test_tables_lost_by_the_leader_are_kept_at_the_standby(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     leads, follows = sides
@@ -393,7 +393,7 @@ def test_what_a_leader_has_lost_stays_at_the_standby_though_it_never_received_of
         assert [user.username for user in one.accounts.users()] == ["ada", "admin"]
 
 
-def test_two_that_have_both_lost_theirs_agree_again(sides: tuple[HaMode, HaMode]) -> None:
+def test_stations_that_both_lost_their_tables_agree_again(sides: tuple[HaMode, HaMode]) -> None:
     leads, follows = sides
     leads.accounts.add_user("admin", PASSWORD, Role.ADMINISTRATOR, generated=True)
     for one in sides:
@@ -441,7 +441,7 @@ def audit_of(side: HaMode) -> set[str]:
     return {one.detail for one in side.records.audit_entries(EVER)}
 
 
-def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(
+def test_audit_is_identical_with_different_clocks(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
@@ -460,7 +460,7 @@ def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(
     assert len(audit_of(standby)) == 1202
 
 
-def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_beginning(
+def test_audit_of_a_replacement_machine_is_copied_from_its_start(
     sides: tuple[HaMode, HaMode], tmp_path: Path
 ) -> None:
     gone, standby = sides
@@ -483,7 +483,7 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
         assert len(audit_of(standby)) == 4
 
 
-def test_what_the_other_has_forgotten_is_received_of_until_it_is_noted(
+def test_erasures_of_the_other_station_are_repeated_until_recorded(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
@@ -502,7 +502,7 @@ def test_what_the_other_has_forgotten_is_received_of_until_it_is_noted(
 
 
 @pytest.mark.parametrize(("leads", "heeds"), [("active", ["person p8"]), (None, [])])
-def test_what_the_other_forgot_as_this_one_asked_is_heeded_again_by_who_has_copied_from_there(
+def test_erasure_requested_by_a_station_is_applied_again_after_copying(
     sides: tuple[HaMode, HaMode], leads: str | None, heeds: list[str]
 ) -> None:
     """And by no other: the two would ask each other for ever."""
@@ -531,7 +531,9 @@ def test_the_base_map_is_the_active_stations(sides: tuple[HaMode, HaMode]) -> No
     assert standby.base_maps.corners() is None
 
 
-def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[HaMode, HaMode]) -> None:
+def test_people_photos_audit_and_enrolments_are_replicated_over_the_bus(
+    sides: tuple[HaMode, HaMode],
+) -> None:
     active, standby = sides
     active.pki.create("Test", [], ["tls/10.0.0.1:7447"])
     standby.pki.join(active.pki.enroll_station("standby", [], "tls/10.0.0.2:7447"))

@@ -79,7 +79,7 @@ def test_people_and_emergencies_reach_a_tak_server(
     assert station.stop() == 0
 
 
-def test_after_the_server_was_away_the_newest_comes_and_an_alarm_tells(
+def test_newest_events_are_sent_after_an_outage_of_the_server(
     serve: Callable[..., Command],
     data: Path,
     unit: Unit,
@@ -111,7 +111,7 @@ def test_after_the_server_was_away_the_newest_comes_and_an_alarm_tells(
         until(lambda: away()[0]["state"] == "resolved", "the alarm is over")
 
 
-def test_over_tls_both_ends_are_certified(
+def test_tls_requires_certificates_of_both_ends(
     serve: Callable[..., Command],
     data: Path,
     unit: Unit,
@@ -176,7 +176,7 @@ def test_an_open_server_elsewhere_is_refused_at_the_start(
     assert "plain = true" in station.output()
 
 
-def test_other_teams_are_on_the_plan_live_and_in_the_replay(
+def test_other_teams_are_shown_live_and_in_the_replay(
     serve: Callable[..., Command], data: Path, tak: TakServer, tmp_path: Path
 ) -> None:
     station = serve("--config", settings(tmp_path, tak.url))

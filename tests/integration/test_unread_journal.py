@@ -84,9 +84,7 @@ def kept(station: LiveStation, unit: Unit) -> list[int]:
     return [counts[payload] for payload in unit.kept]
 
 
-def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
-    tmp_path: Path, unit: Unit
-) -> None:
+def test_unreadable_message_is_fetched_once_over_restarts(tmp_path: Path, unit: Unit) -> None:
     with running(tmp_path / "station", unit) as (station, backfill):
         station.act(RegisterUnit(U, "one"))
         station.publish(unit.position(1))
@@ -101,7 +99,7 @@ def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
         assert kept(station, unit) == [1] * len(unit.kept)
 
 
-def test_what_came_live_and_cannot_be_read_is_not_fetched(tmp_path: Path, unit: Unit) -> None:
+def test_unreadable_message_received_live_is_not_fetched(tmp_path: Path, unit: Unit) -> None:
     newer = encode(unit.position(3, schema=SCHEMA_REVISION + 1))
     with LiveStation(tmp_path / "station") as station:
         station.act(RegisterUnit(U, "one"))
