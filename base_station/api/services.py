@@ -22,7 +22,7 @@ from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
 from base_station.dispatch.alert_intake import AlertIntake
 from base_station.dispatch.config import DispatchConfig
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue

@@ -13,7 +13,7 @@ from base_station.archive.enclosed import ArchivedImports, ArchivedRadio
 from base_station.archive.entry import require_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import ArchiveStore, open_store
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.radio.radio_log import RadioLog
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.incident_rows import put_rows
@@ -33,7 +33,7 @@ def open_copier(archive: str, data: Path, *, with_radio: bool = False) -> Iterat
     target = open_store(archive)
     with open_database(folder.require_database()) as store:
         yield ArchiveCopier(
-            target, store, LogFeed(folder.log), SystemClock(), ImportFolder(folder.imports),
+            target, store, FolderFeed(folder.log), SystemClock(), ImportFolder(folder.imports),
             RadioLog(folder.radio) if with_radio else None,
         )  # fmt: skip
 

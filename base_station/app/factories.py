@@ -10,7 +10,7 @@ from base_station.api.hub import Hub
 from base_station.api.replays import StartReplay
 from base_station.app.first_login import USERNAME, ensure_administrator
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.replay.playback import Archive
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
 from base_station.replay.processes.wire import ArchivedLog
@@ -105,7 +105,7 @@ def project_whole_log(store: Database, log: Path, on_progress: Callable[[float],
             _log.warning("%d places of units are no numbers and are left out", left_out)
 
     count = project_log(
-        LogFeed(log).records(),
+        FolderFeed(log).records(),
         past_pipeline(None),
         write,
         lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),

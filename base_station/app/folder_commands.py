@@ -13,7 +13,7 @@ from base_station.app.factories import project_whole_log
 from base_station.app.logged_action import log_action
 from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.core.log_position import LogPosition
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.privacy.erasure_queue import erase_now
 from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService

@@ -13,7 +13,7 @@ from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.station_storage import StationStorage
 from base_station.dispatch.alert_intake import AlertIntake
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.processes.log_process import LogProcess

@@ -17,7 +17,7 @@ from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.finding import ArchivedLogs
 from base_station.archive.partly_archived import opened_copy
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import read_incident_file
 from base_station.replay.playback import Archive
@@ -218,7 +218,7 @@ def _open_log(
     for path, reason in left_out.items():
         defects.note_foreign(path, reason)
     defects.look_at_files()
-    log = LogFeed(folder.log, on_damage=defects.note_damage)
+    log = FolderFeed(folder.log, on_damage=defects.note_damage)
     if decides_again and not defects() and decisions_differ(log.records(), past_pipeline(None)):
         defects.note(DIFFERS)
     return log, defects

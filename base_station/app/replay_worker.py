@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
@@ -12,7 +11,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.copying import ArchiveCopier
 from base_station.archive.partly_archived import here_or_lost, opened_copy, partly_archived
 from base_station.archive.store import open_store
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.playback import Archive
@@ -73,7 +72,8 @@ def work(line: FrameChannel) -> None:
         if flaws.note_damage(what):
             line.send(Damage(what))
 
-    log = _log_of(job, flaws, note_damage)
+    own = FolderFeed(Path(job.log), on_damage=note_damage)
+    log = _log_of(job, own, flaws)
     match job:
         case ReplayJob():
             replay(job, _archive(job, log, flaws), SystemClock(), line)
@@ -84,12 +84,12 @@ def work(line: FrameChannel) -> None:
         case CatchUpJob():
             _catch_up(job, _archive(job, log, flaws), line)
         case TimelineJob():
-            _timeline(job, log, flaws, line)
+            _timeline(job, own, flaws, line)
         case ArchiveJob():
-            _copy_incidents(job, log, line)
+            _copy_incidents(job, own, line)
 
 
-def _log_of(job: Job, flaws: LogDefects, note_damage: Callable[[str], None]) -> LogFeed:
+def _log_of(job: Job, own: FolderFeed, flaws: LogDefects) -> LogFeed:
     match job:
         case (
             ReplayJob(archived=ArchivedLog() as archived)
@@ -97,9 +97,6 @@ def _log_of(job: Job, flaws: LogDefects, note_damage: Callable[[str], None]) -> 
             | ReportJob(archived=ArchivedLog() as archived)
         ):
             return opened_copy(archived, flaws)
-    own = LogFeed(Path(job.log), on_damage=note_damage)
-    if isinstance(job, TimelineJob) and job.archived:
-        return partly_archived(own, job.archived, flaws)
     return own
 
 
@@ -186,7 +183,7 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
         line.send(Failure(str(error), is_memory=False))
 
 
-def _copy_incidents(job: ArchiveJob, log: LogFeed, line: FrameChannel) -> None:
+def _copy_incidents(job: ArchiveJob, log: FolderFeed, line: FrameChannel) -> None:
     stand_back(line)
     try:
         with open_database(Path(job.database)) as store:
@@ -202,7 +199,8 @@ def _copy_incidents(job: ArchiveJob, log: LogFeed, line: FrameChannel) -> None:
         line.send(Failure(str(error), is_memory=False))
 
 
-def _timeline(job: TimelineJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
+def _timeline(job: TimelineJob, own: FolderFeed, flaws: LogDefects, line: FrameChannel) -> None:
+    log = partly_archived(own, job.archived, flaws) if job.archived else own
     stand_back(line)
     request = TimelineRequest(job.unit_id, Window(job.from_ns, job.until_ns), job.buckets)
     try:

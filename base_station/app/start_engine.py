@@ -10,7 +10,7 @@ from base_station.app.pipeline_factory import new_pipeline
 from base_station.app.startup_console import Watch
 from base_station.core.state import StationState
 from base_station.engine.engine import StationEngine
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.engine.ports import EnginePorts
 from base_station.site.plan_reader import PlanReader
 from base_station.storage.checkpoints import SavedState

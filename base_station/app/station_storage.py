@@ -11,7 +11,7 @@ from pathlib import Path
 from base_station.app.factories import Announce, project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.finding import ArchivedLogs
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
@@ -74,7 +74,7 @@ class StationStorage:
     @property
     def log(self) -> LogFeed:
         """Feed of the records that are written up to the moment of reading."""
-        return LogFeed(self.folder.log, self.recorder.flush, self.check.recheck)
+        return FolderFeed(self.folder.log, self.recorder.flush, self.check.recheck)
 
     @property
     def archive(self) -> Archive:

@@ -25,7 +25,7 @@ from base_station.archive.entry import (
 )
 from base_station.archive.store import ArchiveStore
 from base_station.core.state import ERASED_TEXT
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import AFTER_NS, IncidentFileSource, incident_file
 from base_station.storage.db.archived import ArchivedCopies, ArchivedFile
@@ -81,7 +81,7 @@ class ArchiveCopier:
         self,
         archive: ArchiveStore,
         store: Database,
-        log: LogFeed,
+        log: FolderFeed,
         clock: Clock,
         imports: ImportFolder,
         radio: RadioLog | None = None,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from base_station.archive.entry import CONSOLE_NAME, LOG_NAME, name_in_archive
 from base_station.archive.store import ArchiveStore
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.storage.db.archived import ArchivedFile
 from shared.mcap_log import (
     LogRecord,
@@ -30,7 +30,7 @@ class ArchivedFeed(LogFeed):
         on_damage: Callable[[str], object] = lambda _: None,
     ) -> None:
         """``files``: of the catalogue, by name."""
-        super().__init__(Path(incident_id), on_damage=on_damage)
+        self._on_damage = on_damage
         self._store, self._incident_id, self._files_by_name = store, incident_id, files
         self._console = _ranged(store, incident_id, files[CONSOLE_NAME])
         self._whole = _ranged(store, incident_id, files[LOG_NAME])
@@ -40,7 +40,7 @@ class ArchivedFeed(LogFeed):
     def log_id(self) -> str:
         return self._id
 
-    def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
+    def noting(self, on_damage: Callable[[str], object]) -> ArchivedFeed:
         return ArchivedFeed(
             self._store, self._incident_id, self._files_by_name, self._id, on_damage
         )

@@ -10,7 +10,7 @@ import msgspec
 from base_station.archive.entry import ENTRY_NAME, decoded_entry, name_in_archive
 from base_station.archive.partly_archived import opened_copy, partly_archived
 from base_station.archive.store import open_store
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed, RecordSource
 from base_station.replay.incident_file import AFTER_NS
 from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
 from base_station.storage.db.archived import ArchivedCopies
@@ -61,7 +61,7 @@ class ArchivedLogs:
         archived = self.instead_of_log(incident)
         return None if archived is None else opened_copy(archived)
 
-    def feed(self, own: LogFeed, from_ns: int, until_ns: int) -> LogFeed:
+    def feed(self, own: LogFeed, from_ns: int, until_ns: int) -> RecordSource:
         """The station's log between two times, wherever it is.  Raises ArchiveError."""
         parts = self.parts(from_ns, until_ns)
         return partly_archived(own, parts) if parts else own

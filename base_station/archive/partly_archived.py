@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from base_station.archive.entry import decoded_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import open_store
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import RecordSource
 from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
 from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.log_defects import LogDefects
@@ -23,15 +22,14 @@ class OpenedPart:
 
     from_ns: int
     until_ns: int
-    log: LogFeed
+    log: RecordSource
 
 
-class PartlyArchivedFeed(LogFeed):
+class PartlyArchivedFeed:
     """Reading raises ArchiveError where the archive does not answer."""
 
-    def __init__(self, own: LogFeed, parts: Sequence[OpenedPart]) -> None:
+    def __init__(self, own: RecordSource, parts: Sequence[OpenedPart]) -> None:
         """``parts``: in the order of time; of two that overlap the first is read."""
-        super().__init__(Path())
         self._own, self._parts = own, parts
 
     def records(
@@ -64,7 +62,7 @@ def opened_copy(archived: ArchivedLog, flaws: LogDefects | None = None) -> Archi
 
 
 def partly_archived(
-    own: LogFeed, parts: Sequence[ArchivedPart], flaws: LogDefects | None = None
+    own: RecordSource, parts: Sequence[ArchivedPart], flaws: LogDefects | None = None
 ) -> PartlyArchivedFeed:
     opened = [OpenedPart(one.from_ns, one.until_ns, opened_copy(one.log, flaws)) for one in parts]
     return PartlyArchivedFeed(own, opened)

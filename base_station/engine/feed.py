@@ -1,4 +1,4 @@
-"""Feeds: ordered sources of the station's records, from the bus or from a log.
+"""Live feed: ordered queue of the station's records, from the bus to the engine.
 
 A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of`` makes
 the event of it.
@@ -7,14 +7,13 @@ the event of it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Container, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from threading import Condition
 
 from shared.channels import Qos, parse_key
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError
-from shared.mcap_log import LogRecord, log_id_of, read_log, segment_paths
+from shared.mcap_log import LogRecord
 
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _OVERFLOW_REPORTED_NS = 60 * NS_PER_S
@@ -147,74 +146,6 @@ class LiveFeed:
         self._bytes += len(payload)
         if len(self._queue) == 1:
             self._changed.notify_all()
-
-
-class LogFeed:
-    """The records of a log, from every segment in turn, the one being written included.
-
-    Any thread may ask; each iterator is for one thread.  Records come in the order of recording,
-    which is the order of stepping.
-    """
-
-    def __init__(
-        self,
-        folder: Path,
-        flush: Callable[[], object] = lambda: None,
-        on_damage: Callable[[str], object] = lambda _: None,
-    ) -> None:
-        """``flush`` brings what is still in memory to the disk (``Recorder.flush``); ``on_damage``
-        receives a sentence about each part that cannot be read.
-        """
-        self._folder = folder
-        self._flush = flush
-        self._on_damage = on_damage
-
-    @property
-    def log_id(self) -> str:
-        """Of its segments; empty: of an earlier version."""
-        return log_id_of(segment_paths(self._folder))
-
-    @property
-    def segment_names(self) -> set[str]:
-        """File names of its segments."""
-        return {path.name for path in segment_paths(self._folder)}
-
-    def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
-        """The same log, with another callback for damage."""
-        return LogFeed(self._folder, self._flush, on_damage)
-
-    def records(
-        self,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        keys: Container[str] | None = None,
-    ) -> Iterator[LogRecord]:
-        """From station time ``start_ns`` until before ``end_ns``, as it stands at the first step.
-
-        Raises LogError when a segment cannot be opened.
-        """
-        self._flush()
-        return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
-
-    def everything(
-        self, start_ns: int, end_ns: int | None, topics: Container[str] | None
-    ) -> Iterator[LogRecord]:
-        """Records of these topics, of those that follow from others too; None: all that happened
-        and was decided.
-        """
-        self._flush()
-        return read_log(
-            self._folder, start_ns, end_ns, topics, self._on_damage, derived=topics is not None
-        )
-
-    def watch(self) -> Callable[[], bool]:
-        """Gives a function: True if a segment of now has been written anew since, or is gone."""
-        now = self._files()
-        return lambda: not now <= self._files()
-
-    def _files(self) -> set[tuple[str, int]]:
-        """By name and which file that is: one that is written anew is another."""
-        return {(path.name, path.stat().st_ino) for path in segment_paths(self._folder)}
 
 
 def _is_alert(key: str) -> bool:

@@ -22,7 +22,7 @@ import msgspec
 from base_station.core.events import Received, event_of
 from base_station.core.pins.pin_registry import PinAction
 from base_station.core.state import ERASED_TEXT
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.radio.radio_log import RadioLog
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.models import IncidentRow

@@ -15,7 +15,7 @@ from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of, with_thresholds
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.dispatch.in_words import description
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.replay.assessment.report import with_people
 from base_station.replay.assessment.wearers import wearers
 from base_station.replay.post_processing import read_report

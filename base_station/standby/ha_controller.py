@@ -14,7 +14,7 @@ from threading import Event
 
 from base_station.config import StandbyConfig
 from base_station.core.log_position import START, LogPosition
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.security.router.peer_router_probe import accepts_connections
 from base_station.standby.election import LACKING_LEASES, Election, LocalStatus

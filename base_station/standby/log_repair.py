@@ -15,7 +15,7 @@ from threading import Event
 from typing import Protocol
 
 from base_station.core.log_position import START, LogPosition, Record, is_event
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.standby.log_sender import DiskReader, place_of
 from base_station.standby.protocol import Batch, pack, unpack
 from base_station.standby.rpc import RpcServer, ask

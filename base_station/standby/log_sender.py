@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 
 from base_station.core.log_position import LogPosition, Record, events_after
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.standby.protocol import Batch, LogAncestry, pack
 from base_station.standby.rpc import RpcServer
 from base_station.standby.shared_log import SharedLog

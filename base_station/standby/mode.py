@@ -12,7 +12,8 @@ from base_station.api.ha_status import HaStatus
 from base_station.config import StandbyConfig
 from base_station.core.log_position import LogPosition
 from base_station.core.state import StationState
-from base_station.engine.feed import LiveFeed, LogFeed
+from base_station.engine.feed import LiveFeed
+from base_station.engine.log_feed import LogFeed
 from base_station.engine.ports import EngineGate, Feed, Log
 from base_station.engine.station_clock import SteadyClock
 from base_station.security.pki.folder import PkiFolder

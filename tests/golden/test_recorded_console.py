@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.engine.ports import Trails
 from base_station.replay.playback import Archive
 from base_station.replay.player import Player
@@ -181,7 +181,7 @@ def test_recorded_console_equals_the_live_console(tmp_path: Path) -> None:
             if number % 200 == 199:
                 live.append(undisturbed(station))
         station.act(CloseIncident("i1"))
-    feed = LogFeed(station.recorder.folder)
+    feed = FolderFeed(station.recorder.folder)
     recorded = RecordedPlayer(feed.everything, Screen(), station_people)
     for t_ns, snapshot in live:
         played, _ = shown_at(recorded, t_ns)

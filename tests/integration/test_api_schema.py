@@ -24,7 +24,7 @@ from schemathesis.specs.openapi.checks import ignored_auth, positive_data_accept
 from base_station.accounts.principals import Role
 from base_station.api.forms import IDEMPOTENCY_KEY
 from base_station.api.server import ConsoleServer, bind
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.replay.timelines.unit_timeline import read_timeline
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
@@ -52,7 +52,7 @@ def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str
     desk = DeskStation(folder, ManualClock())
     _, token = desk.services.accounts.add_token("administrator", "t", Role.ADMINISTRATOR, None)
     (folder / "log").mkdir()
-    read = partial(read_timeline, desk.services.records, LogFeed(folder / "log"))
+    read = partial(read_timeline, desk.services.records, FolderFeed(folder / "log"))
     desk.app.state.services = replace(desk.services, read_timeline=read)
     desk.hub.reset(desk.drive.picture(), {})  # health is known once the drive has spoken
     listening = bind("127.0.0.1", 0)

@@ -14,7 +14,7 @@ import pytest_asyncio
 
 from base_station.accounts.principals import Role
 from base_station.app import folder_commands
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.processes.timeline_process import TimelineProcess
@@ -66,7 +66,7 @@ async def station(tmp_path: Path, folder: DataFolder, store: Store) -> AsyncIter
     station.app.state.services = replace(
         station.services,
         roster=Roster(store, clock),
-        read_timeline=partial(read_timeline, Records(store, clock), LogFeed(folder.log)),
+        read_timeline=partial(read_timeline, Records(store, clock), FolderFeed(folder.log)),
     )
     yield station
     station.close()
@@ -145,7 +145,7 @@ def test_separate_process_reads_the_same_timeline(
     folder: DataFolder, store: Store, tmp_path: Path
 ) -> None:
     request = TimelineRequest("FF-02", Window(START_NS, START_NS + 300 * NS_PER_S), 100)
-    here = read_timeline(Records(store, SystemClock()), LogFeed(folder.log), request)
+    here = read_timeline(Records(store, SystemClock()), FolderFeed(folder.log), request)
     damage: list[str] = []
     with ReplayProcesses() as processes:
         log_process = LogProcess(

@@ -24,7 +24,7 @@ from base_station.config import HttpConfig
 from base_station.department.answers import StartedReplay
 from base_station.department.archive_replays import ArchiveReplays
 from base_station.department.config import DepartmentArchiveConfig
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import AlarmRow
@@ -168,7 +168,7 @@ def test_archived_incident_replays_identically_with_few_requests(
 ) -> None:
     address = f"{ADDRESS}-shown"
     succeeded("archive", "copy", address, "--data", data)
-    here = RecordedPlayer(LogFeed(data / "log").everything, Screen(), people)
+    here = RecordedPlayer(FolderFeed(data / "log").everything, Screen(), people)
     with Store(data / "station.sqlite") as store:
         incident = Records(store, SystemClock()).require_incident("i1")
     for second in range(1, WALKED_S, 57):
@@ -182,7 +182,9 @@ def test_archived_incident_replays_identically_with_few_requests(
             if second >= WALKED_S - 57:
                 rows = Records(opened.store, SystemClock())
                 assert "mayday" in {one.rule for one in rows.alarms(EVER)}
-                before = list(LogFeed(data / "log").records(incident.opened_ns, incident.closed_ns))
+                before = list(
+                    FolderFeed(data / "log").records(incident.opened_ns, incident.closed_ns)
+                )
                 after = list(opened.log.records(incident.opened_ns, incident.closed_ns))
                 assert after == before, "to decide again, all of it is fetched"
 
@@ -451,7 +453,7 @@ def test_damaged_copy_is_detected_and_replaced(data: Path, tmp_path: Path) -> No
 
 
 def test_erased_person_is_removed_from_the_next_copy(data: Path, tmp_path: Path) -> None:
-    records = list(LogFeed(data / "log").records())
+    records = list(FolderFeed(data / "log").records())
     script = Script()
     script.now_s = (records[-1][0] - START_NS) / NS_PER_S + 1.0
     script.act(CloseIncident("i3"))

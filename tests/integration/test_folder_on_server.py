@@ -17,7 +17,7 @@ from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.station_storage import open_storage
 from base_station.config import StationConfig
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.privacy.erasure_queue import ErasureJob
 from base_station.replay.playback import Archive
 from base_station.storage.checkpoints import Checkpoints
@@ -138,7 +138,7 @@ def test_commands_on_the_folder_find_the_server_by_its_stored_address(
 
 def test_missing_rows_of_a_time_are_projected_again(moved: Path, address: ServerAddress) -> None:
     archive = Archive(
-        LogFeed(moved / "log").records, Checkpoints(moved / "checkpoints"), past_pipeline
+        FolderFeed(moved / "log").records, Checkpoints(moved / "checkpoints"), past_pipeline
     )
     with ServerStore(address) as store:
         before = rows(store, LOGGED)

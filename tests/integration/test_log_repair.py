@@ -11,7 +11,7 @@ from threading import Event
 import pytest
 
 from base_station.core.log_position import is_event
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.standby.log_repair import EventServer, LogRepair
 from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.recorder import Recorder
@@ -48,7 +48,7 @@ class HaController:
         self.mine, self.theirs = (Recorder(folder / name, SystemClock(), POLICY) for name in "ab")
         for recorder in (self.mine, self.theirs):
             closing_all.callback(recorder.close)
-        disk = LogFeed(self.theirs.folder, self.theirs.flush)
+        disk = FolderFeed(self.theirs.folder, self.theirs.flush)
         server = EventServer("b", router.attach_station(), disk)
         closing_all.callback(server.close)
         self.check = IntegrityChecker(Term("restore", "It is mended."))

@@ -15,7 +15,7 @@ import pytest
 
 from base_station.app import folder_commands as station_app
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor, read_report
@@ -52,7 +52,7 @@ class Desk:
         self.store = Store(self.folder.database)
         self.kept = SmoothedTracks(self.store)
         self.records = Records(self.store, SystemClock())
-        log = LogFeed(self.folder.log)
+        log = FolderFeed(self.folder.log)
         self.archive = Archive(
             log.records, Checkpoints(self.folder.checkpoints), past_pipeline, log.watch
         )

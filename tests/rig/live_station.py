@@ -10,8 +10,9 @@ from base_station.core.alarms import ALARMS
 from base_station.core.checkpoint import Checkpoint
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.engine import StationEngine
-from base_station.engine.feed import LiveFeed, LogFeed
+from base_station.engine.feed import LiveFeed
 from base_station.engine.liveness import LivenessMonitor
+from base_station.engine.log_feed import FolderFeed
 from base_station.engine.ports import ActionResult, EnginePorts, Feed, Log, Trails
 from base_station.engine.station_clock import SteadyClock
 from base_station.fusion import FUSERS
@@ -99,7 +100,7 @@ class LiveStation:
         self.reported: Report = {}  # what may be acknowledged
         self.reported_unsafe: Report = {}  # what may be in memory only
         self.feed = LiveFeed(clock)
-        self.log = LogFeed(self.recorder.folder, self.recorder.flush)
+        self.log = FolderFeed(self.recorder.folder, self.recorder.flush)
         self.router = MemoryRouter()
         self.bus = self.router.attach_station()
         self._subscription = self.bus.subscribe(

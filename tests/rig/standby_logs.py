@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.standby.shared_log import SharedLog
 from base_station.storage.recorder import Recorder
 from shared.channels import FUSED, TICK
@@ -29,7 +29,7 @@ def written(recorder: Recorder, log: SharedLog, records: list[Record]) -> None:
 
 
 def disk(recorder: Recorder) -> LogFeed:
-    return LogFeed(recorder.folder, recorder.flush)
+    return FolderFeed(recorder.folder, recorder.flush)
 
 
 class FullDisk:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import msgspec
 
 from base_station.core.events import Received, event_of
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import RecordSource
 from base_station.replay.radio_contact import CONTACT_CHANNELS, GAP_NS, SentTimes
 from base_station.replay.timelines.downsampling import Column, MinMaxBuckets
 from base_station.storage.db.records import Records
@@ -51,7 +51,7 @@ class TimelineRequest:
     buckets: int
 
 
-def read_timeline(records: Records, log: LogFeed, request: TimelineRequest) -> UnitTimeline:
+def read_timeline(records: Records, log: RecordSource, request: TimelineRequest) -> UnitTimeline:
     """Raises LogError where a segment of the log cannot be opened."""
     timeline = _Timeline(request)
     for record in _of_unit(log, request):
@@ -67,7 +67,7 @@ def read_timeline(records: Records, log: LogFeed, request: TimelineRequest) -> U
     return timeline.result()
 
 
-def _of_unit(log: LogFeed, request: TimelineRequest) -> Iterator[LogRecord]:
+def _of_unit(log: RecordSource, request: TimelineRequest) -> Iterator[LogRecord]:
     """Messages of the span, then those that a journal brought later."""
     unit_id, window = request.unit_id, request.window
     late = [backfilled_key(unit_id, channel.suffix) for channel in _JOURNALED]

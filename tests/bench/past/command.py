@@ -18,7 +18,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
 from base_station.replay.processes.post_processing_process import (
@@ -103,7 +103,7 @@ def _look_back(
     live: AbstractContextManager[PositionAges],
     alone_s: float,
 ) -> LookBackFigures:
-    log = LogFeed(folder.log)
+    log = FolderFeed(folder.log)
     archive = Archive(log.records, Checkpoints(folder.checkpoints), past_pipeline, log.watch)
     with Store(folder.database) as store, ReplayProcesses() as processes:
         place = PostProcessingContext(

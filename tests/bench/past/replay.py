@@ -20,7 +20,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.engine.ports import Trails
 from base_station.replay.playback import Archive
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
@@ -234,7 +234,7 @@ def _times_real(
 
 def _decided_again(folder: DataFolder, window: ReplayWindow) -> tuple[float, list[float], float]:
     """First picture, seeks and speed without what consoles were shown."""
-    log = LogFeed(folder.log)
+    log = FolderFeed(folder.log)
     archive = Archive(log.records, Checkpoints(folder.checkpoints), past_pipeline, log.watch)
     watcher, began_s = Watcher(), time.perf_counter()
     session = ReplaySession(archive, window, 1.0, watcher, person_lookup({}), SystemClock())

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
-from pathlib import Path
 
 from base_station.archive.partly_archived import OpenedPart, PartlyArchivedFeed, here_or_lost
-from base_station.engine.feed import LogFeed
 from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
 from base_station.storage.missing_segments import KnownSegment
 from shared.mcap_log import LogRecord
 
 
-class NamedFeed(LogFeed):
+class NamedFeed:
     """A record each ten nanoseconds, with the name of who gives it."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(Path(name))
         self._name = name
 
     def records(

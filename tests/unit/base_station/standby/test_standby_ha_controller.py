@@ -10,7 +10,8 @@ import pytest
 
 from base_station.config import StandbyConfig
 from base_station.core.log_position import LogPosition
-from base_station.engine.feed import LiveFeed, LogFeed
+from base_station.engine.feed import LiveFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.standby.ha_controller import HaController, HaDependencies
 from base_station.standby.shared_log import SharedLog
@@ -34,7 +35,7 @@ class LogFollower:
         self.log = SharedLog(self.disk, clock)
         self.feed = StandbyFeed(LiveFeed(clock), clock)
         around = HaDependencies(
-            MemoryRouter().attach_station(), self.log, LogFeed(folder), self.feed, clock,
+            MemoryRouter().attach_station(), self.log, FolderFeed(folder), self.feed, clock,
             on_lead=lambda: None, start_again=lambda _: None,
         )  # fmt: skip
         self.pair = HaController(StandbyConfig("b", ("tcp/127.0.0.1:1",)), around)

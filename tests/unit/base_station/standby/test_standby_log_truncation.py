@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from base_station.core.log_position import START, LogPosition
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.standby.log_truncation import (
     APART,
     mark_merged,
@@ -37,7 +37,7 @@ def test_cut_log_holds_the_records_up_to_the_cut_and_the_rest_is_beside(
         place = place.next(t_ns)
     folder = DataFolder(tmp_path)
     set_aside(folder, place)
-    left = list(LogFeed(folder.log).records())
+    left = list(FolderFeed(folder.log).records())
     assert [record for record in left if record[1] == TICKED] == records[:kept]
     assert len(left) == 2 * kept  # with its decisions
     (name,) = parts(tmp_path)
@@ -57,7 +57,7 @@ def test_log_continues_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     recorder = Recorder(tmp_path, SystemClock())
     written(recorder, SharedLog(recorder, SystemClock()), events(3, start=9))
     recorder.close()
-    kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+    kept = [r for r in FolderFeed(tmp_path / "log").records() if r[1] == TICKED]
     assert kept == events(12)
     reported = [
         [payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)
@@ -73,7 +73,7 @@ def test_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there(
     written(recorder, SharedLog(recorder, SystemClock()), records)
     recorder.close()
     set_aside(DataFolder(tmp_path), LogPosition(T0 + 4, 1))
-    kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+    kept = [r for r in FolderFeed(tmp_path / "log").records() if r[1] == TICKED]
     assert kept == records[:5]
     (name,) = parts(tmp_path)
     assert list(read_part(tmp_path, name)) == records[5:]
@@ -92,7 +92,7 @@ def test_set_aside_records_do_not_come_back_with_the_next_start(tmp_path: Path) 
     set_aside(DataFolder(tmp_path), LogPosition(T0 + 7, 2))
     for _ in range(2):
         Recorder(tmp_path, SystemClock()).close()
-        kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
+        kept = [r for r in FolderFeed(tmp_path / "log").records() if r[1] == TICKED]
         assert kept == records[:9]
     (name,) = parts(tmp_path)
     assert list(read_part(tmp_path, name)) == records[9:]
@@ -115,7 +115,7 @@ def test_log_on_a_disk_of_its_own_is_cut_too(
     written(recorder, SharedLog(recorder, SystemClock()), records)
     recorder.close()
     set_aside(folder, LogPosition(records[6][0], 1))
-    kept = [record for record in LogFeed(folder.log).records() if record[1] == TICKED]
+    kept = [record for record in FolderFeed(folder.log).records() if record[1] == TICKED]
     (name,) = parts(tmp_path)
     assert [*kept, *read_part(tmp_path, name)] == records
     assert len(kept) == 7

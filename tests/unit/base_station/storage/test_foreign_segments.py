@@ -10,7 +10,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.log_defects import LogDefects
 from base_station.storage.recorder import Recorder
@@ -79,7 +79,7 @@ def by_others(path: Path) -> Path:
 
 def seconds(data: DataFolder, reported: list[str]) -> list[int]:
     return [
-        int(payload) for _, _, payload in LogFeed(data.log, on_damage=reported.append).records()
+        int(payload) for _, _, payload in FolderFeed(data.log, on_damage=reported.append).records()
     ]
 
 

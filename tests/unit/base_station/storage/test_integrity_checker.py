@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.standby.stale_state import StaleState
 from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.recorder import Recorder
@@ -67,7 +67,7 @@ def test_unreadable_segment_is_reported_and_prevents_no_start(
     path.symlink_to(path.name)
     with closing(Recorder(tmp_path / "elsewhere", SystemClock())) as again:
         assert path.name in looked(IntegrityChecker(Term("restore", "")), again).problems()[0]
-        assert sum(1 for _ in LogFeed(again.folder).records()) > 0
+        assert sum(1 for _ in FolderFeed(again.folder).records()) > 0
 
 
 def test_segment_missing_at_the_start_is_reported(recorder: Recorder, tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_segment_missing_at_the_start_is_reported(recorder: Recorder, tmp_path: 
 
 def test_damage_found_by_a_reader_is_checked_at_once(recorder: Recorder) -> None:
     check = looked(IntegrityChecker(Term("restore", "")), recorder)
-    feed = LogFeed(recorder.folder, recorder.flush, check.recheck)
+    feed = FolderFeed(recorder.folder, recorder.flush, check.recheck)
     assert sum(1 for _ in feed.records()) == 300
     path = flip(recorder)
     assert sum(1 for _ in feed.records()) < 300

@@ -15,7 +15,7 @@ from typing import NoReturn
 
 import pytest
 
-from base_station.engine.feed import LogFeed
+from base_station.engine.log_feed import FolderFeed
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.recorder import LOG_FOLDER, Recorder
 from shared.channels import EVENT, OPERATOR, POSITION
@@ -57,7 +57,7 @@ def test_urgent_record_is_on_the_disk_when_write_returns(tmp_path: Path) -> None
 
 def test_records_in_memory_are_readable_at_once(tmp_path: Path) -> None:
     with recording(tmp_path) as recorder:
-        feed = LogFeed(recorder.folder, recorder.flush)
+        feed = FolderFeed(recorder.folder, recorder.flush)
         for number in range(1000):
             recorder.write(T0_NS + number, KEY, number.to_bytes(2, "big"))
         assert len(list(feed.records())) == 1000

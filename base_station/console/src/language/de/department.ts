@@ -48,7 +48,7 @@ export const department: Part<"department"> = {
   never: "hat sich nie gemeldet",
   away: "seit {age} getrennt: Personen wie zuletzt gemeldet",
   station_away: "Station getrennt",
-  search: "Name, Trupp oder Einheit",
+  search: "Name, Trupp oder Gerät",
   all: "alle",
   nobody: "Niemand.",
   crew: "Trupp",
