@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { fitMargins, leastMargins } from "../src/plan/margins";
+import { fitMargins, isInMiddle, leastMargins } from "../src/plan/margins";
 
 describe("margins about people on the plan", () => {
   it("leave room for the zoom buttons and names where the plan is large", () => {
@@ -18,5 +18,20 @@ describe("margins about people on the plan", () => {
     leastMargins([w, h]).forEach((px, side) => {
       expect(px).toBeLessThan(fitMargins([w, h])[side] ?? 0);
     });
+  });
+});
+
+describe("the middle of the plan", () => {
+  const isIn = (place: [number, number] | null) => isInMiddle(place, [800, 400]);
+
+  it("is half of its width and of its height", () => {
+    expect([isIn([400, 200]), isIn([210, 110]), isIn([590, 290])]).toEqual([true, true, true]);
+    expect([isIn([190, 200]), isIn([610, 200]), isIn([400, 90]), isIn([400, 310])]).not.toContain(true);
+  });
+
+  it("is not known before the plan is drawn", () => {
+    expect(isIn(null)).toBe(false);
+    expect(isInMiddle([0, 0], [])).toBe(false);
+    expect(isInMiddle([0, 0], [0, 0])).toBe(false);
   });
 });

@@ -22,7 +22,7 @@ import { PeopleLayer } from "./peopleLayer";
 import type { Scene } from "./peopleScene";
 import { Grid } from "./grid";
 import { ImportLayer, type ImportScene } from "./importLayer";
-import { fitMargins, leastMargins } from "./margins";
+import { fitMargins, isInMiddle, leastMargins } from "./margins";
 import type { Box, Pixel } from "./names";
 import { PastLayer, type PastScene } from "./pastLayer";
 import { RouteLayer } from "./routeLayer";
@@ -280,10 +280,14 @@ export class PlanMap {
     return true;
   }
 
-  centre(at: [number, number]): void {
+  /** Show a place from near.  The plan moves only where that is not so yet, and then at once: with many people
+   * each step of a glide would be a drawing of all. */
+  showNear(at: [number, number]): void {
     this.chosen = true;
-    const resolution = Math.min(this.view.getResolution() ?? CLOSE_M_PER_PX, CLOSE_M_PER_PX);
-    this.view.animate({ center: at, resolution, ...moving() });
+    const resolution = this.view.getResolution() ?? Infinity;
+    if (resolution <= CLOSE_M_PER_PX && isInMiddle(this.pixelOf(at), this.map.getSize() ?? [])) return;
+    this.view.setCenter(at);
+    this.view.setResolution(Math.min(resolution, CLOSE_M_PER_PX));
   }
 
   zoom(steps: number): void {

@@ -51,12 +51,11 @@ export class Sprites {
   }
 }
 
+/** An image: a canvas would be copied before each time that it is drawn. */
 function painted(width: number, height: number, paint: (to: Context) => void): Sheet | null {
-  const sheet = document.createElement("canvas");
-  sheet.width = width;
-  sheet.height = height;
-  const context = sheet.getContext("2d");
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext("2d");
   if (context === null) return null;
   paint(context);
-  return sheet;
+  return canvas.transferToImageBitmap();
 }

@@ -1,3 +1,4 @@
+import { useComputed } from "@preact/signals";
 import type { RefObject } from "preact";
 import { memo } from "preact/compat";
 import { useLayoutEffect, useRef } from "preact/hooks";
@@ -35,7 +36,7 @@ interface Props {
 /** A press anywhere chooses the person; for keys and screen readers its head is the button. */
 export const Card = memo(({ unitId, urgency, place, brief, line, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
-  const chosen = selectedUnit.value === unitId;
+  const chosen = useComputed(() => selectedUnit.value === unitId).value; // a choice concerns two cards, not all
   const card = useInSight(chosen);
   useSeen(card, unitId, picture);
   const steady = useGuardedPress(place, false);

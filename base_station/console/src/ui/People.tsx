@@ -98,21 +98,26 @@ function nobodyWords(picture: Picture): string {
 /** All of them where they cannot be sorted out. */
 function shownOf(places: readonly Place[], picture: Picture): Group[] {
   let groups: Group[] = [{ crew: null, places, down: 0 }];
-  const what = { text: text.value, part: part.value, always: selectedUnit.value };
   guarded(t("people_list.list"), () => {
     const units = picture.allUnits();
-    groups = grouped(sought(places, units, what), units, order.value);
+    const always = isSought() ? selectedUnit.value : null; // who is chosen changes no whole list
+    const found = sought(places, units, { text: text.value, part: part.value, always });
+    groups = grouped(found, units, order.value);
   });
   return groups;
+}
+
+/** Whether the list is of some people only. */
+function isSought(): boolean {
+  return text.value.trim() !== "" || part.value !== null;
 }
 
 /** A searched list states that others are left out. */
 function LeftOut({ groups, all }: { groups: readonly Group[]; all: number }) {
   const shown = groups.reduce((sum, group) => sum + group.places.length, 0);
-  const sought = text.value.trim() !== "" || part.value !== null;
   return (
     <div class="left-out" role="status">
-      {sought && (
+      {isSought() && (
         <>
           <span>{t("people_list.shown", { shown, all })}</span>
           <button type="button" onClick={showAll}>

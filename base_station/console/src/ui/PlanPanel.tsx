@@ -41,7 +41,7 @@ export function PlanPanel({ picture }: { picture: Picture }) {
     const unitId = selectedUnit.peek() ?? "";
     if (!picture.isShown(unitId)) return; // where it is, is of another ground
     const position = picture.unit(unitId)?.peek().position;
-    if (position) map.current?.centre(siteCoordinate(position));
+    if (position) map.current?.showNear(siteCoordinate(position));
   });
 
   // A tool that wants places needs the plan.
