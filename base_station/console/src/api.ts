@@ -26,9 +26,9 @@ export type ShownEnrolment = answers.ShownEnrolment;
 export type Incident = answers.IncidentAnswer;
 export type OfferedDispatch = answers.OfferedDispatch;
 export type PastAlarm = answers.PastAlarm;
-/** What an incident is closed over knowingly. */
+/** Obstacles that the closing of an incident names. */
 export type Despite = Required<answers.ClosingForm>;
-/** How often everybody is to be heard from, and when to send them to rest. */
+/** PAR interval and work limit. */
 export type Times = answers.Times;
 export type RunningReplay = answers.Replay;
 export type BaseMap = answers.BaseMapAnswer;
@@ -39,7 +39,7 @@ export type ExportFormat = answers.Format;
 export type NewPin = Required<Omit<answers.PinForm, "heading_rad" | "heading_std_rad">>;
 export type Start = Required<Omit<answers.StartForm, "heading_std_rad">>;
 export type TrailsAnswer = answers.Trails;
-/** What became of a request that had no answer; the station refuses (404) what it has not done. */
+/** Outcome of a request without an answer; 404 if the station has not carried it out. */
 export type CarriedOut = answers.CarriedOut;
 export type Route = answers.RouteAnswer;
 export type Guide = answers.GuideAnswer;
@@ -89,7 +89,7 @@ export const changePerson = (personId: string, person: Omit<Person, "person_id" 
 export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
-/** All of them, or nobody; a preview does nothing. */
+/** All of them, or none; a preview changes nothing. */
 export const importPeople = (csv: Blob, preview: boolean) =>
   call<PeopleImport>("POST", `/people/import?preview=${preview}`, new Blob([csv], { type: "text/csv" }));
 
@@ -100,12 +100,12 @@ export const forgetPerson = (personId: string, name: string) =>
 export const forgetIncident = (incidentId: string, name: string) =>
   call<Forgetting>("POST", `/incidents/${id(incidentId)}/forget`, { name });
 
-/** Have a unit's raw recording pulled: of an incident, or from a station time until now. */
+/** Starts the transfer of a unit's raw recording: of an incident, or from a station time until now. */
 export const fetchRecording = (
   unitId: string,
   wanted: { incident_id: string } | { from_ms: number },
 ) => call<object>("POST", "/recordings", { unit_id: unitId, ...wanted });
-/** What has come of it is kept. */
+/** The received part is kept. */
 export const stopRecording = (fetchId: string) =>
   call<void>("DELETE", `/recordings/${id(fetchId)}`);
 export const registerUnit = (unitId: string, label: string) =>
@@ -161,7 +161,7 @@ export const alarms = (fromMs: number) =>
   fetchAllPages<answers.AlarmWithLife>("/alarms", (alarm) => alarm.raised_ms, `&from_ms=${fromMs}`);
 /** Which raising of it is on the screen. */
 export type SeenAlarm = Pick<AlarmView, "alarm_id" | "last_raised_ms">;
-/** As it is seen: the station refuses it for one that has been raised anew since. */
+/** For the shown raising: the station refuses it for an alarm that was raised again since. */
 export const acknowledge = ({ alarm_id, last_raised_ms }: SeenAlarm) =>
   act<void>("POST", `/alarms/${id(alarm_id)}/acknowledge`, { last_raised_ms });
 export const resolve = (
@@ -178,7 +178,7 @@ export const routes = (unitId: string, rescuerId: string | null = null) =>
     `/units/${id(unitId)}/routes${rescuerId === null ? "" : `?rescuer_id=${id(rescuerId)}`}`,
   );
 export const guides = () => call<Guide[]>("GET", "/guides");
-/** The way is sent to the rescuer's unit, piece by piece. */
+/** The route is sent to the rescuer's unit, leg by leg. */
 export const guide = (unitId: string, rescuerId: string) =>
   act<Guide>("POST", `/units/${id(unitId)}/guides`, { rescuer_id: rescuerId });
 export const endGuide = (rescuerId: string) =>
@@ -196,7 +196,7 @@ export const repeatCommand = (commandId: string, unitId: string | null = null) =
 /** The evacuation is over. */
 export const giveAllClear = (commandId: string) =>
   act<CommandView>("POST", `/commands/${id(commandId)}/all-clear`, {});
-/** The units signal their place no more. */
+/** Ends the signals of the units. */
 export const stopCommand = (commandId: string) =>
   act<void>("POST", `/commands/${id(commandId)}/stop`, {});
 export const confirmCommand = (commandId: string, unitId: string) =>
@@ -228,7 +228,7 @@ export const endSessions = (username: string) =>
   call<void>("DELETE", `/users/${id(username)}/sessions`);
 export const audit = (untilMs?: number) => call<AuditEntry[]>("GET", `/audit${page(untilMs)}`);
 
-/** What is left out stays as it was. */
+/** Omitted fields stay unchanged. */
 export type MovedPin = Pick<NewPin, "unit_id" | "north_m" | "east_m"> & Partial<NewPin>;
 export type MovedBeacon = Pick<BeaconView, "beacon_id" | "north_m" | "east_m"> &
   Partial<Omit<BeaconView, "seen_ms">>;
@@ -260,7 +260,7 @@ export const timeline = (unitId: string, fromMs: number, untilMs: number, bucket
 export const alarmExplanation = (alarmId: string) =>
   call<answers.AlarmExplanationAnswer>("GET", `/alarms/${id(alarmId)}/explanation`);
 
-/** Takes some seconds: the smoothed trails are worked out for it. */
+/** Takes some seconds: the smoothed trails are computed for it. */
 export const assessment = (incidentId: string) =>
   call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);
 
@@ -272,7 +272,7 @@ function onSiteOf(incidentId?: string): string {
   return incidentId === undefined ? "" : `?incident_id=${id(incidentId)}`;
 }
 
-/** Nothing of it is kept. */
+/** Its data is deleted. */
 export const draftPlan = (file: File, page: number, unit: string) =>
   call<PlanDraft>(
     "POST",
@@ -300,7 +300,7 @@ export const changeReplay = (replayId: string, change: ReplayChange) =>
 export const endReplay = (replayId: string) => call<void>("DELETE", `/replays/${id(replayId)}`);
 
 export const radio = (incidentId: string) => call<answers.RadioAnswer>("GET", `/incidents/${id(incidentId)}/radio`);
-/** The audio of a window, second for second; a player asks for it in parts. */
+/** The audio of a window, second for second; a player requests it in ranges. */
 export const radioPath = (incidentId: string, channel: string, fromMs: number, lengthMs: number) =>
   `${BASE}/incidents/${id(incidentId)}/radio/${id(channel)}?from_ms=${fromMs}&length_ms=${lengthMs}`;
 

@@ -7,7 +7,7 @@ export type Theme = (typeof THEMES)[number];
 
 export const theme = kept<Theme>("muster-theme", THEMES, "system");
 
-/** Letters as shortcuts get in the way of who speaks to the computer (WCAG 2.1.4): they can be off. */
+/** Letters as shortcuts interfere with speech input (WCAG 2.1.4): they can be switched off. */
 export const shortcutsOn = keptSwitch("muster-shortcuts", "on");
 
 /** The layout for a screen on a wall. */
@@ -24,7 +24,7 @@ const systemDark = matchMedia("(prefers-color-scheme: dark)");
 const isSystemDark = signal(systemDark.matches);
 systemDark.addEventListener("change", ({ matches }) => (isSystemDark.value = matches));
 
-/** The theme on the page, once its colours hold: what draws on a canvas reads them then. */
+/** The theme of the page, set after its colours apply: drawings on a canvas read them then. */
 export const shownTheme = signal<Exclude<Theme, "system">>("light");
 
 effect(() => {

@@ -26,7 +26,7 @@ export function cells(figures: Figures | null): string[] {
   return [ce50_m, ce95_m, ve95_m, se95_m].map((metres) => length(metres));
 }
 
-/** The station promised clearly less error than there was; people relied on that. */
+/** The stated error was clearly smaller than the actual one. */
 export function tooSure(stated: Figures | null, known: Figures | null): boolean {
   if (stated === null || known === null) return false;
   return known.ce95_m > MUCH_MORE * stated.ce95_m && known.ce95_m - stated.ce95_m > WORTH_SAYING_M;
@@ -35,7 +35,7 @@ export function tooSure(stated: Figures | null, known: Figures | null): boolean 
 const MUCH_MORE = 1.5;
 const WORTH_SAYING_M = 1;
 
-/** Who wore it, as people are called; the unit where nobody is known. */
+/** Name of the wearer; the unit if there is none. */
 export function wearerOf(unit: UnitAssessment): string {
   return unit.people.length === 0 ? unit.unit_id : `${unit.people.join(", ")} (${unit.unit_id})`;
 }
@@ -47,7 +47,7 @@ export function lightParts(trust: TrustSeconds): { green: number; amber: number;
   return { green: trust.green_s / all, amber: trust.amber_s / all, red: trust.red_s / all };
 }
 
-/** How far the unit's own path missed where its wearer came back to the beginning. */
+/** Closure error of the unit's own path when its wearer returned to the start. */
 export function closureOf(unit: UnitAssessment): string {
   if (unit.loop_closure_m === null) return NOTHING;
   const distance = length(unit.loop_closure_m);

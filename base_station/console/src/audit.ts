@@ -17,11 +17,11 @@ const COMMANDS: readonly (PlainKey | "")[] = [
   "order.alarm_acknowledged",
   "order.all_clear",
 ];
-/** Says nothing to a person. */
+/** Fields without meaning for users. */
 const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "ended_command_id", "term"]);
-/** Where 0 is no number: it was left out. */
+/** Fields in which 0 means omitted. */
 const ZEROS = new Set(["after_t_ns", "last_raised_ms", "par_interval_s", "work_limit_s", "position_rate_hz"]);
-/** Where 0 is the beginning of the path. */
+/** Fields in which 0 means the start of the path. */
 const FROM_START = "t_ns";
 const DEGREES = 180 / Math.PI;
 
@@ -33,7 +33,7 @@ export function actionWord(action: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-/** What was sent with an action, without what was left empty; `names` are people's, by id. */
+/** Fields of an action without the empty ones; `names` are those of people, by id. */
 export function detailWords(detail: string, names: ReadonlyMap<string, string>): string {
   if (!detail.startsWith("{")) return withNames(detail, names);
   const values = JSON.parse(detail) as Record<string, unknown>;
@@ -44,7 +44,7 @@ export function detailWords(detail: string, names: ReadonlyMap<string, string>):
   return listed(all);
 }
 
-/** People stand there by id, with the name that was given then where one was. */
+/** Fields with a person's id, shown with the name at that time if there was one. */
 function withNames(detail: string, names: ReadonlyMap<string, string>): string {
   const [id = "", ...given] = detail.split(" ");
   const name = names.get(id);
@@ -122,7 +122,7 @@ function plain(value: number): string {
   return number(value, String(value).split(".")[1]?.length ?? 0);
 }
 
-/** The name of a field; of one that this console does not know, as the station has it. */
+/** The name of a field; an unknown one as the station names it. */
 function fieldWord(name: string): string {
   return knownLabel("audit_field", name) ?? spaced(name);
 }

@@ -38,7 +38,7 @@ function hoursText(minutes: number): string {
   return `${hours} ${minutesText(minutes % 60, 2)}`;
 }
 
-/** How old something is, as coarse as it is old: "0.4 s", "42 s", "3 min", "1 h 12 min". */
+/** An age, coarser with its size: "0.4 s", "42 s", "3 min", "1 h 12 min". */
 export function age(ms: number): string {
   return ms < 60_000 ? duration(ms) : minutes(ms);
 }
@@ -50,7 +50,7 @@ export function minutes(ms: number): string {
   return whole < 60 ? minutesText(whole) : hoursText(whole);
 }
 
-/** Minutes and seconds as on a kitchen clock: "12:40", "1:02:40". */
+/** Minutes and seconds of a timer: "12:40", "1:02:40". */
 export function countdown(ms: number): string {
   const seconds = Math.ceil(Math.max(0, ms) / 1000);
   const minutes = Math.floor(seconds / 60);
@@ -62,25 +62,25 @@ export function countdown(ms: number): string {
 
 const CLOCK_WRONG_MS = 10_000;
 
-/** What a unit has found wrong when it checked itself at its start. */
+/** Results of a unit's check at its start. */
 export function preflightText({ level, text }: PreflightView): string {
   return t(level === "failed" ? "member.preflight_failed" : "member.preflight_warning", { text });
 }
 
-/** Where a sensor is worn, and how: "left foot", "lower back (belt)". */
+/** Place and mounting of a sensor: "left foot", "lower back (belt)". */
 export function wornAt({ place, place_recognised, mount }: WornSensorView): string {
   const where = place === "" ? t("member.place_unknown") : label("worn", place);
   const how = [mount, place_recognised ? t("member.recognised") : ""].filter((word) => word !== "");
   return how.length === 0 ? where : `${where} (${how.join(", ")})`;
 }
 
-/** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
+/** Offset of a unit's own clock from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
 export function clockOffset({ ahead_ms, std_ms }: ClockView): string {
   const way = ahead_ms < 0 ? "measure.behind" : "measure.ahead";
   return t(way, { time: briefDuration(Math.abs(ahead_ms)), std: briefDuration(std_ms) });
 }
 
-/** Far enough for times in its black box to mislead. */
+/** Offset from which times in its black box are misleading. */
 export function isClockWrong({ ahead_ms }: ClockView): boolean {
   return Math.abs(ahead_ms) >= CLOCK_WRONG_MS;
 }
@@ -138,14 +138,14 @@ export function shortFloor(floor: number): string {
 
 const FLOOR_CERTAIN = 0.95;
 
-/** Less probable than this, no floor is said: a number would be believed. */
+/** Below this probability no floor is shown: a number would be believed. */
 const FLOOR_LIKELY = 0.5;
 
 export function isFloorLikely({ floor_probability: sure }: PositionView): boolean {
   return sure === null || sure >= FLOOR_LIKELY;
 }
 
-/** The floor, and how sure that is where there is a doubt; of an old position it is that of then. */
+/** The floor, with its probability if uncertain; for an old position the floor at that time. */
 export function floorOf(position: PositionView, old = false): string {
   const { floor, floor_probability: sure } = position;
   if (floor === null) return floorName(floor);
@@ -190,10 +190,10 @@ export function percent(part: number | null): string {
   return part === null ? t("measure.unknown") : share(part);
 }
 
-/** Less is no stillness that anybody would speak of. */
+/** Shorter stillness is not shown. */
 export const MOTIONLESS_SHOWN_S = 10;
 
-/** What the wearer does; stillness says for how long. */
+/** Activity of the wearer; stillness with its duration. */
 export function activityOf(unit: UnitView): string {
   const { status } = unit;
   if (status === null) return t("member.no_status");
@@ -203,7 +203,7 @@ export function activityOf(unit: UnitView): string {
   return t("member.motionless", { activity, age: age(status.motionless_s * 1000) });
 }
 
-/** How the body is held and goes; empty where the unit does not tell it. */
+/** Posture and gait; empty if the unit does not report them. */
 export function postureText({ posture, posture_confidence, mobility }: StatusView): string {
   const confidence = share(posture_confidence);
   const word = knownLabel("posture", posture);
@@ -215,8 +215,7 @@ export function linkText({ link, switched_off }: UnitView): string {
   return t(switched_off ? "link.switched_off" : `link.${link}`);
 }
 
-/** For how long the wearer is in the building; null: outside, as far as is known.  What became of them
- * since their unit was switched off nobody knows. */
+/** Time in the building; null: outside, as far as is known.  After a unit was switched off it is unknown. */
 export function insideMs(unit: UnitView, nowMs: number): number | null {
   if (unit.inside_since_ms === null) return null;
   const untilMs = unit.switched_off ? (unit.last_heard_ms ?? nowMs) : nowMs;
@@ -231,7 +230,7 @@ export function heatText(level: string): string {
   return label("heat", level === "" ? "normal" : level);
 }
 
-/** Where that is, for who does not see the plan: "12.0 m north, 3.4 m west". */
+/** Position in words, for screen readers: "12.0 m north, 3.4 m west". */
 export function place(at: { north_m: number; east_m: number }): string {
   const along = { length: length(Math.abs(at.north_m)) };
   const across = { length: length(Math.abs(at.east_m)) };
@@ -241,7 +240,7 @@ export function place(at: { north_m: number; east_m: number }): string {
   ]);
 }
 
-/** Whether somebody's place goes by satellites, and why not. */
+/** Whether the position uses satellites, and the reason if not. */
 export function gpsText(reason: string | null): string {
   if (reason === null) return t("member.gps_none");
   return reason === "" ? t("member.gps_used") : t("member.gps_unused", { reason });
@@ -250,11 +249,11 @@ export function gpsText(reason: string | null): string {
 /** The level of an alarm that only informs: the unit's silence is no loss. */
 export const SWITCHED_OFF = "switched off";
 
-/** The rule of the alarm that nobody has heard from somebody in time. */
+/** The rule of the alarm for an overdue PAR. */
 export const MISSED_CHECK_IN = "missed-check-in";
 
-/** What stations of earlier versions put before the own words of a unit, or of the agent that tracks for
- * one; later ones have them as a parameter. */
+/** Prefix of earlier versions before the text of a unit, or of its tracking agent; later versions have
+ * the text as a parameter. */
 const FAULT_PREFIXES: Readonly<Record<string, string>> = {
   "unit-fault": "'s unit: ",
   "tracker-fault": "@tracker): ",
@@ -266,8 +265,8 @@ export function ruleWord(rule: string): string {
   return knownLabel("alarm_label", rule) ?? inWords(rule);
 }
 
-/** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost".  A unit
- * may have several faults, so each says which it is. */
+/** An alarm in short, beside the name of its member: "Heat: warning", "Link lost".  A unit may have
+ * several faults, so each is named. */
 export function alarmLabel(alarm: AlarmView): string {
   const label = knownLabel("alarm_label", `${alarm.rule}/${alarm.level}`) ?? knownLabel("alarm_label", alarm.rule);
   if (label === undefined) return alarmCode(alarm);
@@ -286,7 +285,7 @@ function inWords(rule: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-/** The words of the unit or agent that has a fault; empty: it has none. */
+/** Text of a fault by the unit or agent; empty: there is none. */
 function faultOf({ rule, parameters, text }: AlarmView): string {
   const before = FAULT_PREFIXES[rule];
   if (before === undefined) return "";

@@ -16,16 +16,16 @@ export class ApiError extends Error {
 
 export const BASE = "/api/v1";
 
-/** How long somebody waits before the same is asked again: a connection may have died unnoticed. */
+/** Time until a request is repeated: a connection may have died unnoticed. */
 const RETRY_AFTER_MS = 5_000;
-/** And then: the station itself gives up before. */
+/** Time limit of the repetition: the station itself gives up before. */
 const RETRY_TIMEOUT_MS = 15_000;
-/** After this an action has been answered, or is given up. */
+/** Time after which an action is answered or given up. */
 export const MAX_ACT_MS = RETRY_AFTER_MS + RETRY_TIMEOUT_MS;
 
-/** Longer than this, somebody who pressed something would think that it was not noticed. */
+/** Delay from which a pending press is indicated. */
 const SLOW_AFTER_MS = 700;
-/** How many things the station was told to do for so long without an answer. */
+/** Number of actions without an answer for that long. */
 export const unanswered = signal(0);
 
 async function countWhileSlow<T>(work: Promise<T>): Promise<T> {
@@ -44,8 +44,8 @@ export async function call<T>(method: string, path: string, body?: object | Blob
   return method === "GET" ? work : countWhileSlow(work);
 }
 
-/** Have the station do something.  Without an answer it is asked once more, and does it once all the
- * same: both requests bear one key. */
+/** Requests an action of the station.  Without an answer the request is repeated, and still carried out
+ * once: both requests have the same key. */
 export async function act<T>(method: "POST" | "PUT", path: string, body?: object): Promise<T> {
   const init = request(method, body);
   const key = newKey();
@@ -55,7 +55,7 @@ export async function act<T>(method: "POST" | "PUT", path: string, body?: object
   });
 }
 
-/** Nobody answered, or a station that was too busy to say more. */
+/** No answer, or the station was too busy. */
 function isOutcomeUnknown(error: unknown): boolean {
   return isUnanswered(error) || statusOf(error) === 503;
 }
@@ -87,7 +87,7 @@ export function isUnanswered(error: unknown): boolean {
   return !(error instanceof ApiError) || error.status === 0;
 }
 
-/** No other one is like it.  `randomUUID` is there over TLS only. */
+/** A unique key.  `randomUUID` is available over TLS only. */
 export function newKey(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
@@ -127,7 +127,7 @@ async function reason(response: Response): Promise<string> {
 
 export const id = encodeURIComponent;
 
-/** Lists that grow come page by page, the newest first; the page before is what was until then. */
+/** Growing lists are paged, the newest entries first; the next page has the entries before. */
 export const PAGE = 100;
 const MAX_PAGE = 1000;
 
@@ -135,7 +135,7 @@ export function page(untilMs: number | undefined, limit = PAGE): string {
   return `?limit=${limit}${untilMs === undefined ? "" : `&until_ms=${untilMs}`}`;
 }
 
-/** All pages of a list that is shown whole. */
+/** All pages of a list that is shown completely. */
 export async function fetchAllPages<T>(
   path: string,
   timeOf: (entry: T) => number,

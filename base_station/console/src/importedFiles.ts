@@ -8,7 +8,7 @@ export type ImportedTracks = answers.ImportedTracks;
 /** The longest name that the station takes. */
 const MOST_NAME = 80;
 
-/** What the person knows of the clock that made a file. */
+/** Known offset of the clock that made a file. */
 export interface ClockOfFile {
   shift_s: number;
   utc_offset_h: number | null;
@@ -28,6 +28,6 @@ export const importFile = (incidentId: string, file: File, clock: ClockOfFile) =
 };
 export const removeImport = (incidentId: string, importId: string) =>
   call<void>("DELETE", `${path(incidentId)}/${id(importId)}`);
-/** As it came. */
+/** The original file. */
 export const fileAddress = (incidentId: string, importId: string) =>
   `${BASE}${path(incidentId)}/${id(importId)}/file`;

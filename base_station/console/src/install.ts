@@ -2,6 +2,6 @@
  * TLS and on the station's own machine. */
 export function install(): void {
   if (!("serviceWorker" in navigator)) return;
-  // Without it the page works all the same; the browser says in its console what was wrong.
+  // Without it the page works all the same; the browser logs the error.
   navigator.serviceWorker.register("/sw.js").catch((error: unknown) => console.warn(error));
 }

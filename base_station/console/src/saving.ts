@@ -1,6 +1,6 @@
 const TAKEN_MS = 60_000; // by then the browser has the file
 
-/** Have the browser save a file.  The console stays. */
+/** Saves a file without leaving the console. */
 export function saveAs(name: string, content: Blob): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(content);

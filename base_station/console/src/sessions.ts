@@ -39,21 +39,20 @@ const leads = computed(() => {
   const standby = health?.standby ?? null;
   return (standby === null || standby.role === "active") && (health?.reading ?? null) === null;
 });
-/** A viewer only looks, and the past and a standby are only looked at. */
+/** A viewer, a replay and a standby are read-only. */
 export const mayAct = computed(
   () => user.value !== null && user.value.role !== "viewer" && !isPast.value && leads.value,
 );
 
-/** Of several open incidents the one that is shown: what is asked for a whole incident, or for its
- * ground, names it. */
+/** The shown one of several open incidents: requests about an incident or its site name it. */
 export function namedIncident(): string | undefined {
   const shown = live.peek()?.picture;
   if (shown === undefined || shown.choices.peek().length === 0) return undefined;
   return shown.incident.peek()?.incident_id;
 }
 
-/** Show the console of whoever is logged in, or comes from the other station with a ticket; without
- * anyone the login form stays. */
+/** Shows the console of the user who is logged in or transferred with a ticket; without one the login
+ * form stays. */
 export async function resume(): Promise<void> {
   const ticket = ticketOf(location.hash);
   if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
@@ -73,7 +72,7 @@ export async function resume(): Promise<void> {
 
 const AWAY_AFTER_MS = 8_000;
 
-/** A station that hangs is as good as away. */
+/** A station that hangs counts as away. */
 function inTime<T>(work: Promise<T>): Promise<T> {
   const late = new Promise<never>((_, reject) =>
     setTimeout(() => reject(new ApiError(t("connection.unreachable"), 0)), AWAY_AFTER_MS),
@@ -133,13 +132,13 @@ export function stopReplay(): void {
 
 let steered: Promise<unknown> = Promise.resolve();
 
-/** After what was asked before: requests of the same moment may reach the station in any order, and
- * what a person asked for last is what holds. */
+/** Sent after the previous request: simultaneous requests may arrive in any order, and the last one of
+ * the user must apply. */
 export function steer({ id }: Replay, change: api.ReplayChange): void {
   steered = steered.then(() => attempt(api.changeReplay(id, change)));
 }
 
-/** Where it was when the login ended; the station has ended it by now if that was a while ago. */
+/** Time of the replay when the login ended; the station has ended the replay if that was a while ago. */
 async function replayOn(before: Replay): Promise<void> {
   const id = await attempt(replayAt(before));
   if (replay.peek() !== before) return;
@@ -193,7 +192,7 @@ function resolve(key: string, said: string): Promise<void> {
   });
 }
 
-/** Behind the login form, until the same user is back: the station has no session here any more. */
+/** Hidden behind the login form until the same user is back: the session has ended. */
 function wait(): void {
   stopWatching();
   replay.peek()?.session.close();
@@ -201,7 +200,7 @@ function wait(): void {
   waiting.value = user.peek() !== null;
 }
 
-/** Nothing stays of whoever was here. */
+/** Clears all data of the previous user. */
 function forget(): void {
   wait();
   live.value = null;
@@ -221,7 +220,7 @@ function replayEnded(): void {
 /** `muster base replay` shows the past in place of the live picture. */
 export const liveIsPast = computed(() => live.value !== null && live.value.picture.replay.value !== null);
 
-/** The replay that such a station was started for: there is nothing behind it. */
+/** The replay that such a station was started for: there is no live picture. */
 let adopted: Replay | null = null;
 
 effect(() => {

@@ -8,8 +8,7 @@ import { speak } from "./speech";
 const KEPT_AS = "muster-sound";
 
 export const soundOn = signal(localStorage.getItem(KEPT_AS) !== "off");
-/** Browsers play nothing before the person has pressed anything on the page; to them a swipe is no
- * press. */
+/** Browsers block sound before the first press on the page; a swipe is no press. */
 export const soundBlocked = signal(!navigator.userActivation.hasBeenActive);
 
 // Only when the press has done its work: on the button that says "No sound yet" it means "on".
@@ -19,14 +18,14 @@ for (const kind of ["click", "keyup"]) {
   });
 }
 
-/** Switching on is heard. */
+/** Switching on plays a sample. */
 export function switchSound(on: boolean): void {
   soundOn.value = on;
   localStorage.setItem(KEPT_AS, on ? "on" : "off");
   if (on) play("medium");
 }
 
-/** Sound what a picture brings, until the returned function is called. */
+/** Plays the sounds of a picture until the returned function is called. */
 export function sound(picture: Picture): () => void {
   let before = NO_TONES_YET;
   return effect(() => {

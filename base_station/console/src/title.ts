@@ -1,4 +1,4 @@
-/** The page's title says what is wrong also where another page lies above this one. */
+/** The page's title shows problems also while another page covers this one. */
 import { effect } from "@preact/signals";
 import { t } from "./language/translate";
 import type { Picture } from "./live/picture";

@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import type { AlarmView } from "./wire";
 
 export const selectedUnit = signal<string | null>(null);
-/** Counts up when somebody asks to see the selected unit on the plan. */
+/** Counts up with each request to show the selected unit on the plan. */
 export const centring = signal(0);
 
 export type FloorChoice = number | "all";
@@ -35,7 +35,7 @@ export type DialogName =
   | "dispatch"
   | "imports";
 export const dialog = signal<DialogName | null>(null);
-/** The unit that the dialog is about, where it is about one. */
+/** The unit of the dialog, if it has one. */
 export const dialogUnit = signal<string | null>(null);
 
 /** The alarms whose reason the dialog asks for. */
@@ -55,7 +55,7 @@ export const withImports = signal<NamedIncident | null>(null);
 
 export const notice = signal<string | null>(null);
 
-/** What a small screen shows; a large one has room for both. */
+/** Visible pane of a small screen; a large one shows both. */
 export type Pane = "people" | "plan";
 export const pane = signal<Pane>("people");
 
@@ -66,7 +66,7 @@ export function select(unitId: string, on: number | null): void {
   centring.value += 1;
 }
 
-/** The same, and turn to the plan where the screen has no room for it beside the list. */
+/** The same, and changes to the plan on a small screen. */
 export function find(unitId: string, on: number | null): void {
   select(unitId, on);
   pane.value = "plan";

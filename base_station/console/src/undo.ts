@@ -13,12 +13,12 @@ export interface Undoable {
 
 export const undoable = signal<Undoable | null>(null);
 
-/** Later it is undone where the confirmation is listed. */
+/** Later it is undone in the list of confirmations. */
 export const UNDO_MS = 10_000;
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 
-/** Have PAR confirmed by radio. */
+/** Confirms PAR by radio. */
 export async function confirmPar(target: Target, whom: string): Promise<void> {
   const checkInId = newKey();
   const incidentId = "unit_id" in target ? undefined : namedIncident();
@@ -28,7 +28,7 @@ export async function confirmPar(target: Target, whom: string): Promise<void> {
   });
 }
 
-/** Have a command answered by radio. */
+/** Enters an answer by radio to a command. */
 export async function confirmAnswer(commandId: string, unitId: string, whom: string): Promise<void> {
   await enter(api.confirmCommand(commandId, unitId), {
     words: t("confirmation.undo_answer", { whom }),

@@ -9,7 +9,7 @@ import { Turner } from "./Turner";
 
 const COLUMNS = ["incident", "station", "people", "maydays", "alarms_open", "par_overdue", "opened", "show"] as const;
 
-/** Open ones first, then the newest; all that there ever were, where they are searched for. */
+/** Open ones first, then the newest; a search includes all. */
 export function Incidents({ view }: { view: DepartmentView }) {
   const found = foundIncidents.value;
   return (

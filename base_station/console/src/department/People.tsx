@@ -9,7 +9,7 @@ import { Turner } from "./Turner";
 const COLUMNS = ["who", "crew", "station", "incident", "link", "place", "par", "alarms_open"] as const;
 const LINK_CLASS: Readonly<Record<string, string>> = { live: "good", stale: "doubtful", never: "doubtful" };
 
-/** Who needs help first. */
+/** Members in need of help first. */
 export function People({ view }: { view: DepartmentView }) {
   const shown = people.value;
   return (

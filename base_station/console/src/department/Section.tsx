@@ -6,7 +6,7 @@ interface Props {
   name: string; // of the part, in the page's addresses
   title: string;
   columns: readonly string[];
-  /** What stands there where there are no rows. */
+  /** Text in place of missing rows. */
   empty: string;
   rows: readonly ComponentChildren[];
   besideMap?: boolean;

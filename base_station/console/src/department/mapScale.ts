@@ -23,7 +23,7 @@ export interface MapOfStations<T> {
   bar: number; // part of the width
 }
 
-/** Everybody fits, in true proportions: places near each other are as on a plane. */
+/** A scale that fits all places, in true proportions, as on a plane. */
 export function mapOf<T extends Anchor>(all: readonly T[]): MapOfStations<T> {
   const [first] = all;
   const lon0 = first?.lon_deg ?? 0;

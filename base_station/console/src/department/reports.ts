@@ -8,10 +8,10 @@ import type { DepartmentIncidentsView, DepartmentPeopleView, DepartmentView, Sta
 const PERIOD_MS = 1000;
 const SHUT_OUT = [401, 403];
 
-/** Null: nobody is logged in, or nothing has come yet. */
+/** Null: no user is logged in, or no report has arrived yet. */
 export const overview = signal<DepartmentView | null>(null);
 export const people = signal<DepartmentPeopleView | null>(null);
-/** Incidents that were searched for; null: none were, or nothing has come yet. */
+/** Results of the search; null: none was made, or none has arrived yet. */
 export const foundIncidents = signal<DepartmentIncidentsView | null>(null);
 /** Why what is shown is old; empty: it is current. */
 export const problem = signal("");
@@ -28,7 +28,7 @@ export const incidentSkip = signal(0);
 let timer: ReturnType<typeof setTimeout> | undefined;
 let turn = 0;
 
-/** Asks now, and again after a while for as long as somebody is logged in. */
+/** Requests reports periodically while a user is logged in. */
 export async function refresh(): Promise<void> {
   clearTimeout(timer);
   const mine = ++turn;
@@ -63,7 +63,7 @@ interface Found {
   problem: string;
 }
 
-/** A search asks the database: while that is away, all else goes on from memory. */
+/** A search uses the database: while that is away, all else continues from memory. */
 async function wantedIncidents(): Promise<Found> {
   const search = incidentSearch.peek().trim();
   if (search === "") return { incidents: null, problem: "" };

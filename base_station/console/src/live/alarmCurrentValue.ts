@@ -1,13 +1,12 @@
-/** What an alarm's text says by a figure, as it is now: the text keeps that of when it was raised.
- * Pure. */
+/** Current value of the quantity in an alarm's text, which keeps the value at the raising. Pure. */
 import type { AlarmView, UnitView } from "../wire";
 import * as format from "../format";
 import { listed } from "../language/measures";
 import { t } from "../language/translate";
 import { isOfAnother } from "./alarms";
 
-/** "now 4 %", or "last 4 %" where nothing newer is heard; empty where there is no figure.
- * `silent`: the station itself is not heard. */
+/** "now 4 %", or "last 4 %" without a newer value; empty for an alarm without a value. `silent`: the
+ * station itself is not received. */
 export function alarmCurrentValue(
   alarm: AlarmView,
   unit: UnitView,

@@ -21,8 +21,8 @@ export function singleRows(open: readonly AlarmView[]): AlarmRow[] {
   return open.map((alarm) => ({ key: alarm.alarm_id, alarms: [alarm], isFlood: false }));
 }
 
-/** `open` in the order in which alarms want a person: a row stands where its first alarm does.  A member
- * who is down keeps all alarms in the own row, and a flood is of one incident. */
+/** Rows of `open` by urgency: a row has the place of its first alarm.  A casualty keeps all alarms in the
+ * own row, and a flood is of one incident. */
 export function alarmRows(
   open: readonly AlarmView[],
   incidentOf: (unitId: string) => string = () => "",

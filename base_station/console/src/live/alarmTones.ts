@@ -6,8 +6,8 @@ export type Tone = "high" | "medium" | "low" | "link";
 const OF_PRIORITY: Record<number, Tone> = { 1: "high", 2: "medium", 3: "low" };
 /** The most urgent first. */
 const ORDER: readonly Tone[] = ["high", "link", "medium", "low"];
-/** From one burst to the next for the same, until somebody acknowledges it.  IEC 60601-1-8 wants at most
- * 15 s between bursts of high priority and 30 s of medium; of low at least 15 s. */
+/** Interval between bursts of an unacknowledged alarm.  IEC 60601-1-8 requires at most 15 s between
+ * bursts of high priority and 30 s of medium; of low at least 15 s. */
 export const REPEAT_AFTER_MS: Record<Tone, number> = { high: 10_000, link: 10_000, medium: 20_000, low: 60_000 };
 /** Longer than any burst: a repeat does not run into another. */
 const BURST_MS = 4_000;

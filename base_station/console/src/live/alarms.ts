@@ -10,7 +10,7 @@ export function isOpen(alarm: Pick<AlarmView, "state">): boolean {
   return alarm.state !== "resolved";
 }
 
-/** Highest priority first, then those nobody has taken yet, then the oldest. */
+/** Highest priority first, then unacknowledged ones, then the oldest. */
 export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
   return [...alarms]
     .filter(isOpen)
@@ -23,7 +23,7 @@ export function openAlarms(alarms: Iterable<AlarmView>): AlarmView[] {
     );
 }
 
-/** Whether an alarm of this rule is open about the unit: from which figure on is the station's. */
+/** Whether an alarm of this rule is open about the unit; the station decides the threshold. */
 export function hasAlarm(
   unit: UnitView,
   rule: string,
@@ -32,20 +32,20 @@ export function hasAlarm(
   return unit.alarms.some((alarmId) => alarms.get(alarmId)?.rule === rule);
 }
 
-/** Since when it asks for somebody: what has happened again, or got worse, was raised anew. */
+/** Time of the last raising: an alarm that recurs or gets worse is raised again. */
 export function sinceMs({ state, raised_ms, last_raised_ms }: AlarmView): number {
   return state === "raised" ? last_raised_ms : raised_ms;
 }
 
-/** What these say is of a person, and stays so when the unit is given on. */
+/** Rules about a person: their alarms stay with the person when the unit is reassigned. */
 const OF_WEARER = ["mayday", "fall", "no-motion", MISSED_CHECK_IN, "rest-due"];
 
-/** Whether it is of somebody who wore the unit before. */
+/** Whether the alarm is of a previous wearer of the unit. */
 export function isOfAnother(alarm: AlarmView, unit: UnitView): boolean {
   return OF_WEARER.includes(alarm.rule) && handedTo(alarm, unit) !== "";
 }
 
-/** What cannot wait of whoever wears the unit now, besides that they have not answered. */
+/** Urgent alarms of the current wearer, except an overdue PAR. */
 export function needsOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): AlarmView[] {
   return unit.alarms
     .map((alarmId) => alarms.get(alarmId))
@@ -54,7 +54,7 @@ export function needsOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>):
     .filter((alarm) => !isOfAnother(alarm, unit));
 }
 
-/** Of these, whoever has an emergency alarm open, with its alarms: "Jonas Bergman (Fall, No motion)". */
+/** Those units that have an open emergency alarm, with its alarms: "Jonas Bergman (Fall, No motion)". */
 export function inAlarm(
   units: readonly UnitView[],
   alarms: ReadonlyMap<string, AlarmView>,
@@ -71,7 +71,7 @@ function wholeWord(name: string): RegExp {
   return new RegExp(`(?<![\\p{L}\\p{N}])${letters}(?![\\p{L}\\p{N}])`, "u");
 }
 
-/** Who has the unit now, where an alarm was raised while somebody else did; else empty. */
+/** Current wearer of the unit, if the alarm was raised for another one; else empty. */
 export function handedTo(alarm: AlarmView, unit: UnitView): string {
   const name = displayName(unit);
   if (wholeWord(name).test(alarmText(alarm))) return "";

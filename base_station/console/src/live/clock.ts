@@ -17,11 +17,11 @@ export class StationClock {
   }
 }
 
-/** More than two clocks of one machine differ by in the time between two looks. */
+/** Larger than the difference of two clocks of one machine between two readings. */
 const SLEPT_MS = 5_000;
 
-/** The console's own clock.  `performance.now` never goes back, but on many machines it stands while
- * they sleep; that they did is seen by the clock of the day. */
+/** The console's own clock.  `performance.now` never goes back, but on many machines it stops during
+ * sleep; a sleep is detected by the wall clock. */
 export class LocalClock {
   private lookedMs: number;
   private dayMs: number;

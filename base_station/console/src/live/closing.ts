@@ -7,7 +7,7 @@ import { t } from "../language/translate";
 import { isOpen } from "./alarms";
 import { displayName } from "./urgency";
 
-/** With their ids, which the station wants to be told, and in words. */
+/** With their ids, which the request has to name, and in words. */
 export function unfinished(
   units: readonly UnitView[],
   alarms: Iterable<AlarmView>,

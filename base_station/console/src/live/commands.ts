@@ -21,8 +21,8 @@ export function openTo(unitId: string, commands: Iterable<CommandView>): UnitCom
   );
 }
 
-/** Those of the incident that is open, or of none while none is, and whatever is still on its way:
- * the orders of a closed incident stay in it. */
+/** Orders of the open incident, or of none while none is open, and those still being delivered: orders of
+ * a closed incident are not shown. */
 export function current(
   commands: Iterable<CommandView>,
   incident: IncidentView | null,
@@ -42,7 +42,7 @@ export function unanswered(command: CommandView): DeliveryView[] {
   return command.units.filter((one) => one.state !== "acknowledged");
 }
 
-/** The newest signal of its place that a unit was ordered to give. */
+/** The newest locate order to a unit. */
 export function lastLocate(unitId: string, commands: Iterable<CommandView>): UnitCommand | null {
   const [last] = newestFirst(commands).filter(
     (command) => command.kind === "locate" && command.units.some((one) => one.unit_id === unitId),
@@ -56,12 +56,12 @@ export function newestFirst(commands: Iterable<CommandView>): CommandView[] {
   return [...commands].sort((a, b) => b.issued_ms - a.issued_ms);
 }
 
-/** How many units have done their part, and of how many. */
+/** Number of units that have completed the order, and of its recipients. */
 export function answered(command: CommandView): [done: number, all: number] {
   return [command.units.filter((one) => isDone(command, one)).length, command.units.length];
 }
 
-/** Of an order, whom only the voice radio reaches first, and last those that are done; else in the
+/** Recipients of an order: those reachable only by voice radio first, completed ones last, else in the
  * order given. */
 export function unansweredFirst(command: CommandView): DeliveryView[] {
   const rank = (one: DeliveryView) =>
@@ -78,7 +78,7 @@ export function progress(command: CommandView): string {
   return cannot === 0 ? words : t("order.progress_cannot", { progress: words, count: cannot });
 }
 
-/** An answer by radio is as good as any signal. */
+/** An answer by radio completes an order like any signal. */
 function isDone(command: CommandView, { state }: DeliveryView): boolean {
   return state === doneState(command) || state === "acknowledged";
 }
@@ -91,7 +91,7 @@ function doneState(command: CommandView): DeliveryState {
 export const CANNOT_BE_NOTIFIED = "cannot_be_notified";
 export type ShownState = DeliveryState | typeof CANNOT_BE_NOTIFIED | "ended";
 
-/** However far it has got with a unit without an output, its wearer is not reached by that. */
+/** At a unit without an output no state of delivery means that its wearer is notified. */
 export function shownState(command: CommandView, delivery: DeliveryView): ShownState {
   const { state, can_be_notified } = delivery;
   if (state === "expired" && command.kind === "evacuate" && command.ended_ms !== null) return "ended";
@@ -102,7 +102,8 @@ export function shownState(command: CommandView, delivery: DeliveryView): ShownS
   return CANNOT_BE_NOTIFIED;
 }
 
-/** Whether the voice radio may still bring the answer: what only signals is done once it has. */
+/** Whether an answer by voice radio is still possible: an order that only signals is complete once the
+ * unit signals. */
 export function mayAnswerByRadio(command: CommandView, delivery: DeliveryView): boolean {
   if (command.kind === "evacuate" && command.ended_ms !== null) return false;
   return command.asks_wearer || (command.notifies_wearer && delivery.state !== "notified");
@@ -127,7 +128,7 @@ export function recipients(target: Target, units: readonly UnitView[]): UnitView
   );
 }
 
-/** Whose floor is not known may be on it. */
+/** Members whose floor is unknown may be on it. */
 function mayBeOn({ person, position }: UnitView, floor: number): boolean {
   const on = position?.floor ?? null;
   return person !== null && (on === null || on === floor);
@@ -139,8 +140,8 @@ export function floorsOf(units: Iterable<UnitView>): number[] {
   return [...new Set(floors)].filter((floor) => floor !== null).sort((a, b) => b - a);
 }
 
-/** "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Jonas Bergman"; where it is all of
- * several, without their names; empty: as far as is known, all can be. */
+/** "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Jonas Bergman"; without names if it
+ * is all of several; empty: as far as is known, all can be notified. */
 export function notNotifiable(target: Target, units: readonly UnitView[]): string {
   const all = recipients(target, units);
   const cannot = all.filter((unit) => unit.can_be_notified === false);
@@ -166,7 +167,7 @@ export function deliveryWord(command: CommandView, delivery: DeliveryView): stri
   return locateWord(command, delivery) ?? stateWord(shownState(command, delivery));
 }
 
-/** What a unit does that is to signal its place; null: nothing yet, or it is another order. */
+/** State of a unit that was ordered to signal its place; null: none yet, or another order. */
 function locateWord(command: CommandView, delivery: DeliveryView): string | null {
   const { acknowledged_ms: stoppedMs, acknowledged_via: via, notified_ms: sinceMs, ended_ms: endedMs } = delivery;
   if (command.kind !== "locate") return null;

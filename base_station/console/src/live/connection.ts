@@ -1,4 +1,4 @@
-/** A WebSocket that comes back by itself.  It says what arrived and whether it is up, and confirms to the
+/** A WebSocket that reconnects automatically.  It reports messages and its state, and confirms to the
  * station what was shown. */
 import { Pacing, SCREEN, type Screen } from "./pacing";
 
@@ -9,7 +9,7 @@ export interface ConnectionEvents {
   refused(code: number): void;
 }
 
-/** What of the browser is used; tests put their own in. */
+/** Functions of the browser in use; tests replace them. */
 export interface Surroundings extends Screen {
   open(url: string): WebSocket;
   cancel(timer: unknown): void;
@@ -28,9 +28,8 @@ const LONGEST_RETRY_MS = 5000;
 /** After this much silence the station is asked for a snapshot; after as much again the link is
  * dead, even where the socket has not noticed. */
 export const SILENCE_MS = 2500;
-/** The first picture, which nobody sees coming, may be this long on its way: the station gives it as
- * long (base_station/api/routes/live.py).  Tried again any sooner, it would never be there over a slow
- * link. */
+/** Time limit of the first snapshot, equal to that of the station (base_station/api/routes/live.py).
+ * With an earlier retry it would never arrive over a slow link. */
 export const PICTURE_MS = 20_000;
 /** Codes with which the station ends a connection for good (base_station/api/routes/live.py). */
 export const NOT_LOGGED_IN = 4401;
@@ -59,7 +58,7 @@ export class Connection {
     this.connect();
   }
 
-  /** Ask for a whole picture. */
+  /** Requests a snapshot. */
   askForSnapshot(): void {
     if (this.socket?.readyState === 1) this.socket.send('{"type":"snapshot"}');
   }

@@ -57,7 +57,7 @@ export function positionWords({ lat_deg, lon_deg }: DispatchView): string {
   return lat_deg === null || lon_deg === null ? "" : `${lat_deg.toFixed(6)}, ${lon_deg.toFixed(6)}`;
 }
 
-/** "Engine 12 (E12): crew Engine 12", and what nobody here knows. */
+/** "Engine 12 (E12): crew Engine 12", and units that are unknown at this station. */
 export function unitWords(one: CallSignAnswer): string {
   const name = one.words === one.call_sign ? one.words : `${one.words} (${one.call_sign})`;
   const known = [one.crew === "" ? "" : t("dispatch.crew", { crew: one.crew }), ...one.unit_ids].filter((word) => word !== "");

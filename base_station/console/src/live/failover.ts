@@ -1,5 +1,5 @@
-/** Goes to the other station's console when this one's station is gone, or leads no more.  It is
- * another address, so the browser goes there; the picture here stays until the other one answers. */
+/** Changes to the other station's console when this one's station is lost or no longer leads.  It has
+ * another address, so the browser loads it; the picture here stays until the other one answers. */
 import type { StandbyView } from "../wire";
 import type { LinkState } from "./picture";
 import type { Session } from "./session";
@@ -14,7 +14,7 @@ const ANSWER_MS = 3000;
 export interface Standing {
   link: LinkState;
   standby: StandbyView | null;
-  /** Whether this console has seen its station lead: who looks at a standby may stay. */
+  /** Whether this console has seen its station lead: a console of a standby stays. */
   led: boolean;
   nowMs: number; // by the clock of `link`
 }

@@ -1,9 +1,9 @@
-/** What cannot be shown, though the station said it: a part that fails takes no other along, and says
- * so where it would stand, or here where it stands nowhere. */
+/** Parts of the picture that cannot be shown: a failing part affects no other; it is reported in its
+ * place, or here if it has none. */
 import { signal } from "@preact/signals";
 import { t } from "../language/translate";
 
-/** Sentences; the same one once. */
+/** Sentences without repetition. */
 export const faults = signal<readonly string[]>([]);
 const KEPT = 5;
 
@@ -12,7 +12,7 @@ export function cannotShow(what: string, error: unknown): string {
   return t("common.cannot_show", { what, problem });
 }
 
-/** Do it; that it fails is said on the screen. */
+/** Runs the function; a failure is shown on the screen. */
 export function guarded(what: string | (() => string), work: () => void): boolean {
   try {
     work();

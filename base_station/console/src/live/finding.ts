@@ -40,7 +40,7 @@ export interface Group {
   down: number; // of them
 }
 
-/** By need they stay as they are; crews go by name, those without one last. */
+/** Sorted by urgency the order is kept; crews are sorted by name, members without a crew last. */
 export function grouped(places: readonly Place[], units: readonly UnitView[], order: Order): Group[] {
   if (order === "name") return [groupOf(null, [...places].sort(byName))];
   if (order === "need") return [groupOf(null, places)];

@@ -1,13 +1,13 @@
-/** How long this page takes to show something, so that what is only pleasant is left out where that is long. */
+/** Time that this page takes for an update; decorative motion is left out on a slow page. */
 
-/** Of the newest message in the mean of all. */
+/** Weight of the newest message in the mean. */
 const WEIGHT = 0.2;
-/** From here on, motion that is to please takes time from presses. */
+/** Above this, decorative motion takes time from input. */
 const SLOW_MS = 60;
 
 let meanMs = 0;
 
-/** A message took so long until it was on the screen. */
+/** Records the time from a message to the screen. */
 export function noteFrame(ms: number): void {
   meanMs += WEIGHT * (ms - meanMs);
 }

@@ -1,4 +1,4 @@
-/** The headcount: everybody on scene is in exactly one part of it, so that the counts add up.  Pure. */
+/** The headcount: every member on scene is in exactly one part of it, so that the counts add up.  Pure. */
 import type { UnitView } from "../wire";
 import { recipients } from "./commands";
 
@@ -10,13 +10,13 @@ export interface Headcount {
   parts: Readonly<Record<Part, number>>;
 }
 
-/** Who has a unit, and units in use that are assigned to nobody: those whom an order to everyone is for. */
+/** Members with a unit, and units in use without a wearer: the recipients of an order to everyone. */
 export function onScene(units: readonly UnitView[]): UnitView[] {
   return recipients({ everyone: true }, units);
 }
 
-/** Not located: no message in this incident, no position yet, or switched off while inside.  Who is inside
- * counts as inside, whatever was entered. */
+/** Not located: no message in this incident, no position yet, or switched off while inside.  A member
+ * inside counts as inside, whatever status was entered. */
 export function partOf(unit: UnitView): Part {
   const inside = unit.inside_since_ms !== null;
   if (unit.link === "never") return "never_heard";

@@ -28,8 +28,8 @@ function isOf(alarm: AlarmView, { incident_id }: IncidentView, { units }: State)
   return units.get(alarm.unit_id)?.incident_id === incident_id;
 }
 
-/** Of several open ones the first of `wanted` that is open; else the one that the station names.  Another
- * that is opened meanwhile takes no place from the one that is looked at. */
+/** Of several open incidents the first of `wanted` that is open; else the one that the station names.  A
+ * newly opened one does not replace the shown one. */
 export function shownIncident(
   state: State,
   wanted: readonly (string | null)[],
@@ -40,8 +40,8 @@ export function shownIncident(
   return found.find((one) => one !== undefined) ?? state.incident;
 }
 
-/** The ground and the people of one incident.  Alarms stay those of all.  The same state where the
- * station has one ground: everybody is on it. */
+/** State reduced to the site and the people of one incident.  Alarms stay those of all.  Unchanged while
+ * the station has one site. */
 export function cutTo(state: State, incident: IncidentView | null): State {
   if (incident === null || state.sites.length === 0) return state;
   const units = entriesWhere(state.units, (unit) => unit.incident_id === incident.incident_id);
@@ -66,7 +66,7 @@ export function cutTo(state: State, incident: IncidentView | null): State {
   };
 }
 
-/** What is no such list stays as it is: it is named where it is shown, and takes nobody along. */
+/** A value that is no such list is kept: it is reported where it is shown, and affects nothing else. */
 function onlyThose<T>(all: readonly T[], isWanted: (one: T) => boolean): readonly T[] {
   try {
     return all.filter(isWanted);

@@ -1,25 +1,25 @@
-/** Who comes from the console of the other station goes on there with the ticket that the address
- * carries.  It is another address, and browsers keep logins apart by address: without a ticket that is
- * still good they log in again, and are told why. */
+/** Transfer of a login from the other station's console by the ticket in the address.  Browsers keep
+ * logins apart by address: without a valid ticket the user logs in again, and sees the reason. */
 import { t } from "../language/translate";
 
 const FROM = "#from=";
 const TICKET = "&ticket=";
 const MAX_NAME_LENGTH = 40;
 
-/** The other console's address, with a word for its login page; what is behind # is sent to nobody. */
+/** The other console's address, with a note for its login page; the part behind # is not sent to any
+ * server. */
 export function transferUrl(station: string, url: string, ticket = ""): string {
   const shown = ticket === "" ? "" : TICKET + encodeURIComponent(ticket);
   return `${url}/${FROM}${encodeURIComponent(station)}${shown}`;
 }
 
-/** What the login page says to who came that way; empty: nobody did. */
+/** Text of the login page for a transferred user; empty: there is none. */
 export function arrivalNotice(hash: string): string {
   const from = originSentence(hash);
   return from === "" ? "" : t("login.same_here", { origin: from });
 }
 
-/** To who went on by a ticket, where the browser plays nothing yet: nobody need have pressed anything. */
+/** Notice after a transfer while the browser still blocks sound: no control was pressed yet. */
 export function arrivalSoundNotice(hash: string): string {
   return t("login.press_ok", { origin: originSentence(hash) }).trim();
 }
@@ -31,12 +31,12 @@ function originSentence(hash: string): string {
   return name === "" ? "" : t("login.came_from", { station: name });
 }
 
-/** What lets go on who came that way; empty: nothing does. */
+/** Ticket of the transferred user; empty: there is none. */
 export function ticketOf(hash: string): string {
   return hash.startsWith(FROM) ? decoded(hash.split(TICKET)[1]) : "";
 }
 
-/** The address without the ticket, which is good once. */
+/** The address without the ticket, which is valid once. */
 export function withoutTicket(hash: string): string {
   return hash.startsWith(FROM) ? (hash.split(TICKET)[0] ?? "") : hash;
 }

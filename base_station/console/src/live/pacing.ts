@@ -1,16 +1,17 @@
-/** How soon the station may send more: it is told what was shown, and sends what changed since then as one
- * message.  A page that is slow shows less often, never something old, and keeps time for whoever presses. */
+/** Flow control of the live picture: the console confirms what was shown, and the station sends the
+ * changes since then as one message.  A slow page shows updates less often but never outdated ones, and
+ * keeps time for input. */
 import { noteFrame } from "./frameCost";
 
-/** What of the browser is used; tests put their own in. */
+/** Functions of the browser in use; tests replace them. */
 export interface Screen {
   nowMs(): number;
-  /** Once what is drawn now is on the screen. */
+  /** Called when the current drawing is on the screen. */
   afterFrame(action: () => void): void;
   later(action: () => void, delayMs: number): unknown;
 }
 
-/** A page that is not seen has no frames, and goes on sounding alarms. */
+/** A hidden page has no animation frames, and still sounds alarms. */
 const LONGEST_FRAME_MS = 500;
 const LONGEST_REST_MS = 400;
 
@@ -56,7 +57,7 @@ export class Pacing {
     this.isOver = true;
   }
 
-  /** It rests as long as it was busy: half of the time is for presses. */
+  /** The pause is as long as the work before it: half of the time is left for input. */
   private follow(beganMs: number): void {
     if (this.isBusy) return;
     this.isBusy = true;

@@ -23,8 +23,8 @@ import type { State } from "./state";
 export type LinkState = { kind: "connecting" } | { kind: "up" } | { kind: "down"; sinceMs: number };
 
 const SILENCE_MS = 3000;
-/** A card that is not on the screen is brought up to date with every so many steps of the clock, in turn with
- * the others: read aloud, it is never far behind. */
+/** Cards outside the screen are updated in turn, each after so many steps of the clock: for screen
+ * readers they are never far behind. */
 const UNSEEN_TURNS = 10;
 
 /** What the card of a unit shows, and of which time. */
@@ -37,12 +37,11 @@ interface Card {
 export class Picture {
   readonly link = signal<LinkState>({ kind: "connecting" });
   readonly ready = signal(false);
-  /** Now, in station time; goes on by itself when the station is silent. */
+  /** Current station time; continues without messages. */
   readonly nowMs = signal(0);
-  /** The time that the station said last. */
+  /** Time of the last message of the station. */
   readonly heardMs = signal(0);
-  /** For how long the station has been silent; 0 while it speaks as it should, and in the past, where
-   * nobody has gone on since. */
+  /** Time since the last message of the station; 0 while messages come regularly, and in a replay. */
   readonly silentMs: ReadonlySignal<number> = computed(() => {
     if (this.replay.value !== null) return 0;
     const silentMs = this.nowMs.value - this.heardMs.value;
@@ -63,7 +62,7 @@ export class Picture {
   readonly dispatches = signal<readonly DispatchView[]>([]);
   readonly health = signal<HealthView | null>(null);
   readonly replay = signal<ReplayView | null>(null);
-  /** Of everybody on the station. */
+  /** Of all members of the station. */
   readonly unitIds = signal<readonly string[]>([]);
   readonly trails = signal<ReadonlyMap<string, readonly TrailPoint[]>>(new Map());
   /** Changes with every message that touched a unit; the plan redraws on it. */
@@ -111,7 +110,7 @@ export class Picture {
     return this.unassigned;
   }
 
-  /** Everybody on the station. */
+  /** All members of the station. */
   unitsOfAll(): UnitView[] {
     return [...this.latest.values()];
   }
@@ -160,8 +159,8 @@ export class Picture {
     });
   }
 
-  /** Cards show where everybody is now; call it with the steps of the clock, which draw them anyway.
-   * `all`: of the unseen ones not only those whose turn it is. */
+  /** Updates the positions on the cards; called with the steps of the clock, which draw them anyway.
+   * `all`: all hidden cards, not only those whose turn it is. */
   catchUp(all = false): void {
     this.turn = (this.turn + 1) % UNSEEN_TURNS;
     let number = 0;
@@ -210,8 +209,8 @@ export class Picture {
   }
 }
 
-/** A list that is cut anew with every message stays the same one while it has the same entries: what
- * is being done with them goes on. */
+/** A list that is filtered with every message stays the same object while it has the same entries, so
+ * that an interaction with them is not interrupted. */
 function keep<T>(
   shown: Signal<readonly T[]>,
   next: readonly T[],
@@ -220,7 +219,7 @@ function keep<T>(
   if (!isSameList(shown.peek(), next, isSame)) shown.value = next;
 }
 
-/** What is no list is never the same: where it is shown, it is named. */
+/** A value that is no list never counts as the same: it is reported where it is shown. */
 function isSameList<T>(
   before: readonly T[],
   next: readonly T[],
@@ -243,7 +242,7 @@ function isSameChoice(a: IncidentChoice, b: IncidentChoice): boolean {
   return a.incident === b.incident && a.openAlarms === b.openAlarms;
 }
 
-/** Whoever walks changes in these with every message, and a card shows them to a metre and a second. */
+/** Fields that change with every message of a walking member; a card shows them to a metre and a second. */
 const FLOWING: ReadonlySet<string> = new Set<keyof UnitView>([
   "position",
   "status",
@@ -253,7 +252,7 @@ const FLOWING: ReadonlySet<string> = new Set<keyof UnitView>([
   "clock",
 ]);
 
-/** Whether nothing changed but where somebody is and how far they walked. */
+/** Whether only the position and the distance walked have changed. */
 function isSteady(before: UnitView, now: UnitView): boolean {
   const names = Object.keys(now) as (keyof UnitView)[];
   return (

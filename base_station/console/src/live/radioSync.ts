@@ -1,10 +1,11 @@
-/** Audio of the radio in step with a replay: which window is asked for, and how it is kept on time.  Pure. */
+/** Audio of the radio synchronised with a replay: the requested window, and the correction of its time.
+ * Pure. */
 
-/** So much is asked for at once. */
+/** Length of one request. */
 export const WINDOW_MS = 300_000;
-/** A difference of so much is a jump of the replay: the audio jumps, too. */
+/** A larger difference is a seek of the replay: the audio seeks, too. */
 const JUMP_MS = 1_000;
-/** A smaller one is made good by the speed, which nobody hears. */
+/** A smaller difference is corrected by an inaudible change of the speed. */
 const RATE_CHANGE_MAX = 0.1;
 const MADE_GOOD_WITHIN_MS = 2_000;
 const SLOWEST = 0.5;
@@ -15,7 +16,7 @@ export interface AudioWindow {
   lengthMs: number;
 }
 
-/** The window that has a time of the incident; it stays the same while the replay plays through it. */
+/** The window that contains a time of the incident; it stays the same while the replay plays through it. */
 export function windowAt(atMs: number, startMs: number, endMs: number): AudioWindow {
   const last = Math.max(startMs, endMs - 1);
   const inside = Math.min(Math.max(atMs, startMs), last);
@@ -23,18 +24,18 @@ export function windowAt(atMs: number, startMs: number, endMs: number): AudioWin
   return { fromMs, lengthMs: Math.max(1, Math.min(WINDOW_MS, endMs - fromMs)) };
 }
 
-/** Voice is understood at these speeds. */
+/** Speeds at which voice is intelligible. */
 export function isUnderstood(speed: number): boolean {
   return speed >= SLOWEST && speed <= FASTEST;
 }
 
 export interface Correction {
-  /** The place to go to; null: it stays. */
+  /** The position to seek; null: none. */
   jumpMs: number | null;
   rate: number;
 }
 
-/** What brings the audio, which is at `mediaMs`, to where the replay is. */
+/** Correction that brings the audio from `mediaMs` to the time of the replay. */
 export function correction(mediaMs: number, replayMs: number, speed: number): Correction {
   const lateMs = replayMs - mediaMs;
   if (Math.abs(lateMs) > JUMP_MS) return { jumpMs: replayMs, rate: speed };

@@ -1,7 +1,7 @@
 /** Targets of seeks in a replay: from alarm to alarm, with a short lead.  Pure. */
 import type { AlarmSentence } from "./alarmText";
 
-/** An alarm is better seen coming. */
+/** Lead before an alarm. */
 export const LEAD_MS = 5_000;
 /** A second press within this time seeks the alarm before. */
 const PATIENCE_MS = 3_000;
@@ -14,7 +14,7 @@ interface RaisedOften extends Raised, AlarmSentence {
   raisings: readonly (AlarmSentence & { t_ms: number })[];
 }
 
-/** An entry for each time that an alarm was raised, at first and anew, by time and as it was said then. */
+/** An entry for each raising of an alarm, first or repeated, by time and with its text at that time. */
 export function eachRaising<A extends RaisedOften>(alarms: readonly A[]): A[] {
   return alarms
     .flatMap((alarm) =>

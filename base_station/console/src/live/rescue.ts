@@ -7,7 +7,7 @@ import { t } from "../language/translate";
 import { routeText } from "./routeText";
 import { displayName } from "./urgency";
 
-/** Routes to one member as last answered, and whose is drawn. */
+/** Routes to one member as last answered, and the rescuer whose route is drawn. */
 export interface Rescue {
   unitId: string;
   rescuerId: string | null; // who was chosen; null: nobody yet
@@ -19,10 +19,10 @@ export interface Rescue {
 export const rescue = signal<Rescue | null>(null);
 
 const AGAIN_MS = 2_000;
-/** A crew whose name begins so is the rapid intervention crew: it is named so under *People*. */
+/** Prefix of the name of the rapid intervention crew, as set under *People*. */
 const RIC = /^(RIC|RIT)\b/i;
 
-/** Ask for the ways to a member, now and again; the result ends it. */
+/** Requests the routes to a member periodically until the returned function is called. */
 export function followRescue(unitId: string): () => void {
   rescue.value = { unitId, rescuerId: null, routes: [], guides: [], fault: "" };
   let asking = false;
@@ -39,7 +39,7 @@ export function followRescue(unitId: string): () => void {
   };
 }
 
-/** Show the way of another rescuer. */
+/** Shows the route of another rescuer. */
 export function chooseRescuer(rescuerId: string | null): void {
   const now = rescue.peek();
   if (now === null) return;
@@ -72,12 +72,12 @@ function say(unitId: string, answer: Partial<Rescue>, chosen: string | null): vo
   if (now?.unitId === unitId && now.rescuerId === chosen) rescue.value = { ...now, ...answer };
 }
 
-/** The route that is drawn: of who was chosen, or of the nearest. */
+/** The drawn route: of the chosen rescuer, or of the nearest. */
 export function drawnRoute({ routes, rescuerId }: Rescue): api.Route | null {
   return routes.find((one) => one.unit_id === rescuerId) ?? routes[0] ?? null;
 }
 
-/** "14 m to the stairs, up one floor, left, 9 m": or how far off a line, where no way is known. */
+/** "14 m to the stairs, up one floor, left, 9 m", or the length of a straight line without a known route. */
 export function routeWords(route: api.Route): string {
   const words = routeText(route);
   return route.crosses_walls ? t("route.crosses_walls", { route: words }) : words;
@@ -92,12 +92,12 @@ export function wayWords({ known, distance_m, uncertainty_m }: api.Route): strin
   return known ? words : t("route.straight_line", { length: words });
 }
 
-/** Members of the rapid intervention crew, but for who is down. */
+/** Members of the rapid intervention crew who are no casualties. */
 export function ricOf(units: readonly UnitView[], unitId: string): UnitView[] {
   return units.filter((unit) => unit.unit_id !== unitId && RIC.test(unit.person?.crew ?? ""));
 }
 
-/** Who else can be chosen, by name. */
+/** The other possible rescuers, sorted by name. */
 export function others(units: readonly UnitView[], unitId: string): UnitView[] {
   return units
     .filter((unit) => unit.unit_id !== unitId && unit.registered)

@@ -6,7 +6,7 @@ import { compassWord } from "../plan/edges";
 
 type Leg = Route["legs"][number];
 
-/** Shorter ways are not named (base_station/routing/legs.py). */
+/** Shorter legs are not described (base_station/routing/legs.py). */
 const SHORTEST_M = 1.5;
 
 export function routeText({ known, legs, places }: Route): string {
@@ -25,7 +25,7 @@ function legWords(leg: Leg): string[] {
   return leg.floors === 0 ? words : [...words, climb(leg.floors)];
 }
 
-/** No way is known: how far off, and in what direction. */
+/** Without a known route: the distance and direction of a straight line. */
 function lineText(places: Route["places"]): string {
   const [begin, end] = [places[0], places.at(-1)];
   if (begin === undefined || end === undefined) return "";

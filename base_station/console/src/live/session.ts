@@ -19,7 +19,7 @@ export class Session {
   private state: State | null = null;
   private asked = false;
 
-  /** `onRefused`: the station does not want to show this picture (any more). */
+  /** `onRefused`: the station refuses this picture, or has ended it. */
   constructor(
     private path: string,
     private readonly onRefused: (code: number) => void,
@@ -27,8 +27,8 @@ export class Session {
     this.open();
   }
 
-  /** Also again, once it was closed, or where the picture is to be had now: until the station is
-   * heard, nothing of it is now. */
+  /** Also after a close, or for another address of the picture: until the station is received, the
+   * picture counts as old. */
   open(path = this.path): void {
     this.close();
     this.path = path;
@@ -48,7 +48,7 @@ export class Session {
     this.asked = false;
   }
 
-  /** One that fails costs itself: what it would have said comes with a whole picture. */
+  /** A failing message affects no other: its content comes with the next snapshot. */
   private hearGuarded(text: string): void {
     const heard = guarded(t("frame.message"), () => this.hear(JSON.parse(text) as Message));
     if (!heard) this.askOnce();

@@ -86,7 +86,7 @@ function fromSnapshot(message: Snapshot, before: State | null): State {
   };
 }
 
-/** The same object while it is the same plan: whoever looks at a part of it goes on looking there. */
+/** The same object while the plan is the same, so that the visible part of it is kept. */
 function knownPlan(plan: Plan | null, before: State | null): Plan | null {
   if (plan === null || before === null) return plan;
   const text = JSON.stringify(plan);
@@ -136,7 +136,7 @@ function withChanges(state: State, changes: FieldDelta): State {
   };
 }
 
-/** What was drawn since the snapshot goes on from where the unit was before. */
+/** The trail since the snapshot continues from the previous position of the unit. */
 function withPast(state: State, { unit_id, points }: Trail): State {
   const trail = [...points];
   for (const point of state.trails.get(unit_id) ?? []) {
@@ -151,7 +151,7 @@ function withUnits(units: State["units"], changed: readonly UnitView[]): State["
   return next;
 }
 
-/** Trails whose past was filled in come whole; all go on to where the unit now is. */
+/** Trails whose past was filled in come completely; all continue to the current position of the unit. */
 function withTrails(
   trails: State["trails"],
   changes: FieldDelta,
@@ -189,7 +189,7 @@ function goneOn(trail: readonly TrailPoint[], point: TrailPoint): readonly Trail
   return [...trail, isAfterGap ? [t_ms, north_m, east_m, floor, 1] : point];
 }
 
-/** Whether a trail goes on to this point: somebody walked, came to another floor, or rested for long. */
+/** Whether a trail is extended to this point: after a distance, a change of the floor, or a long rest. */
 function isStep(last: TrailPoint | undefined, point: TrailPoint): boolean {
   if (last === undefined) return true;
   const passedMs = point[0] - last[0];

@@ -1,5 +1,5 @@
-/** A trail's older part with fewer points, as the station thins its own (base_station/core/state/trail.py): the
- * whole way stays, within a stated distance of itself.  Pure. */
+/** Thinning of a trail's older part, as the station thins its own (base_station/core/state/trail.py): the
+ * simplified path stays within a stated distance of the original.  Pure. */
 import type { TrailPoint } from "../wire";
 
 export const TRAIL_POINTS = 900;
@@ -20,7 +20,7 @@ export function bounded(trail: readonly TrailPoint[]): readonly TrailPoint[] {
   return [...older.slice(-OLDER_POINTS), ...trail.slice(-RECENT_POINTS)];
 }
 
-/** By Douglas and Peucker (1973); where the floor changes and where nothing was heard stays. */
+/** By Douglas and Peucker (1973); points at changes of the floor and at gaps are kept. */
 function simplified(points: readonly TrailPoint[], toleranceM: number): TrailPoint[] {
   const kept = new Set<number>();
   let begin = 0;
@@ -33,7 +33,7 @@ function simplified(points: readonly TrailPoint[], toleranceM: number): TrailPoi
   return points.filter((_, i) => kept.has(i));
 }
 
-/** Mark both ends, and between them whatever lies off what is marked. */
+/** Marks both ends, and between them the points that are too far from the marked ones. */
 function keep(
   points: readonly TrailPoint[],
   first: number,
@@ -56,7 +56,7 @@ function keep(
   }
 }
 
-/** How far a place lies from a straight line between two. */
+/** Distance of a point from the straight line between two others. */
 function offOf(at?: TrailPoint, begin?: TrailPoint, end?: TrailPoint): number {
   if (at === undefined || begin === undefined || end === undefined) return 0;
   const [way0, way1] = [end[1] - begin[1], end[2] - begin[2]];

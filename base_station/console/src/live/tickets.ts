@@ -1,5 +1,5 @@
-/** Has a ticket at hand with which the user goes on at the other station, should this one die: then
- * there is nobody left to ask for one. */
+/** Keeps a ticket ready with which the user continues at the other station if this one fails: after the
+ * failure none can be requested. */
 const RENEW_AFTER_MS = 120_000; // it lasts for ten minutes
 const AGAIN_AFTER_MS = 5_000;
 
@@ -9,7 +9,7 @@ export class Tickets {
 
   constructor(private readonly ask: () => Promise<{ ticket: string }>) {}
 
-  /** Called again and again while this station leads and there is another one. */
+  /** Called periodically while this station leads and there is another one. */
   async renew(nowMs: number): Promise<void> {
     if (nowMs < this.dueMs) return;
     this.dueMs = nowMs + AGAIN_AFTER_MS;

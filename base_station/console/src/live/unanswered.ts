@@ -1,12 +1,12 @@
-/** Orders that had no answer: once the station is heard again it is asked what became of each, and the
- * notice says that. */
+/** Orders without an answer: once the station is received again its record of each is requested, and the
+ * notice shows the outcome. */
 import type { CarriedOut } from "../api";
 import { ApiError } from "../http";
 import { clockTime } from "../format";
 import { t } from "../language/translate";
 
 const ASK_EVERY_MS = 2_000;
-/** What waits in a station that was busy or hung is carried out soon after it is heard again. */
+/** Requests that wait in a busy or hung station are carried out soon after it is received again. */
 const PATIENCE_MS = 30_000;
 
 export interface Around {
@@ -18,7 +18,7 @@ export interface Around {
   nowMs(): number;
 }
 
-/** Follow one order until it is known what became of it. */
+/** Follows one order until its outcome is known. */
 export async function followUp(key: string, around: Around): Promise<void> {
   let heardSinceMs: number | null = null;
   for (;;) {

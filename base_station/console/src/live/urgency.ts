@@ -1,4 +1,4 @@
-/** Urgency of members, and a list that does not jump while it is read.  Pure. */
+/** Urgency of members, and a list whose order is stable while it is read.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
 import { MISSED_CHECK_IN, SWITCHED_OFF } from "../format";
 
@@ -9,8 +9,8 @@ const MAYDAY = 0;
 const IN_NEED = 1; // by more than a roll call that nobody has answered yet
 const CALMING_MS = 10_000;
 
-/** From the unit's open alarms, its state, and whether it can be heard; one that was switched off in
- * order is not missed, and that this is said is no need. */
+/** From the unit's open alarms, its state, and its link; a unit that was switched off normally is not
+ * missed, and the notice of that is not urgent. */
 export function urgencyOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): Urgency {
   const open = unit.alarms.map((id) => alarms.get(id));
   const priorities = open.filter((one) => !saysSwitchedOff(one)).map((one) => one?.priority ?? 1);
@@ -25,7 +25,7 @@ function saysSwitchedOff(alarm: AlarmView | undefined): boolean {
   return alarm?.level === SWITCHED_OFF;
 }
 
-/** Where that puts the unit in the list: a mayday first, and whoever is only not heard from last. */
+/** Rank of the unit in the list: a mayday first, a unit that is only not received last. */
 function rankOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>): number {
   const urgency = urgencyOf(unit, alarms);
   if (urgency !== "immediate") return RANK[urgency];
@@ -39,19 +39,19 @@ export function displayName(unit: UnitView): string {
   return unit.person?.name ?? (unit.label || unit.unit_id);
 }
 
-/** Where one of several is chosen: who has a namesake among them is told apart by the unit. */
+/** Label in a choice of several members: members of the same name are distinguished by the unit. */
 export function nameAmong(unit: UnitView, units: readonly UnitView[]): string {
   const name = displayName(unit);
   const namesakes = units.filter((one) => displayName(one) === name);
   return namesakes.length > 1 ? `${name} (${unit.unit_id})` : name;
 }
 
-/** Whether a member is down: in need of help, and not only overdue. */
+/** Whether a member is a casualty: in need of help, and not only overdue. */
 export function isCasualty({ rank }: Place): boolean {
   return rank <= IN_NEED;
 }
 
-/** Where a unit stands in the list, and since when it could stand lower. */
+/** Rank of a unit in the list, and the time since which a lower rank would be due. */
 export interface Place {
   unitId: string;
   name: string;
@@ -60,16 +60,16 @@ export interface Place {
   calmSinceMs: number | null;
 }
 
-/** Between two looks more than this went by, or less than nothing: somebody jumped in the past, and
- * where everybody stood before means nothing. */
+/** A longer or negative step of time between two updates is a seek in a replay: the previous order is
+ * discarded. */
 const JUMP_MS = 5_000;
 
 export function isJump(beforeMs: number, nowMs: number): boolean {
   return nowMs < beforeMs || nowMs - beforeMs > JUMP_MS;
 }
 
-/** The list after a change.  Whoever gets worse moves up at once; whoever gets better keeps the
- * place for a while; and while `held` (somebody points at the list) only the worse ones move. */
+/** The list after a change.  A member whose state gets worse moves up at once; one whose state improves
+ * keeps the place for a while; while `held` (the pointer is over the list) only the former move. */
 export function arrange(
   before: readonly Place[],
   units: readonly UnitView[],

@@ -1,5 +1,4 @@
-/** Where the plan lies on the Earth, from two of its points whose latitude and longitude are known.
- * Pure. */
+/** Georeference of the plan by two points of known latitude and longitude. Pure. */
 import * as measures from "../language/measures";
 import type { AnchorView } from "../wire";
 import { t } from "../language/translate";
@@ -20,10 +19,10 @@ export interface Fit {
 const RAD = Math.PI / 180;
 const EQUATOR_M = 6_378_137.0; // WGS-84
 const ECCENTRICITY_2 = 6.694_379_990_14e-3;
-/** Farther off than this, one of the points is another than was meant. */
+/** Scale error from which one of the two points must be wrong. */
 const MOST_OFF = 0.05;
 
-/** The anchor that puts the middle between the two points where it is; scale is not changed. */
+/** The anchor that maps the middle between the two points exactly; scale is not changed. */
 export function anchorThrough(one: Known, other: Known, heightM: number): Fit {
   const midLat = (one.lat_deg + other.lat_deg) / 2;
   const midLon = (one.lon_deg + other.lon_deg) / 2;
@@ -56,7 +55,7 @@ export function anchorThrough(one: Known, other: Known, heightM: number): Fit {
   };
 }
 
-/** Where a place on the Earth lies on the plan. */
+/** Position on the plan of a place on the Earth. */
 export function siteOf(anchor: AnchorView, latDeg: number, lonDeg: number): Place {
   const perDegree = metresPerDegree((anchor.lat_deg + latDeg) / 2);
   const earth = {
@@ -66,7 +65,7 @@ export function siteOf(anchor: AnchorView, latDeg: number, lonDeg: number): Plac
   return turned(earth, -anchor.plan_rotation_rad);
 }
 
-/** What is wrong with the two points; empty: nothing. */
+/** Error of the two points; empty: none. */
 export function doubtOf(fit: Fit): string {
   const apart = { plan: measures.length(fit.plan_m), earth: measures.length(fit.earth_m) };
   if (fit.plan_m < 5) return t("anchor.too_near", apart);
@@ -74,7 +73,7 @@ export function doubtOf(fit: Fit): string {
   return off > MOST_OFF ? t("anchor.wrong_point", apart) : "";
 }
 
-/** What another place for the plan changes, for who is to say whether that is meant; empty: nothing. */
+/** Effect of a new georeference, shown with the confirmation; empty: none. */
 export function changeOf(shown: AnchorView, next: AnchorView): string {
   const moved = length(siteOf(next, shown.lat_deg, shown.lon_deg));
   const turn = next.plan_rotation_rad - shown.plan_rotation_rad;
@@ -88,7 +87,7 @@ export function changeOf(shown: AnchorView, next: AnchorView): string {
   return other === undefined ? t("anchor.change", { place, change }) : t("anchor.change_two", { place, change, other });
 }
 
-/** What happens to whoever satellites have placed; empty: nothing. */
+/** Effect on members positioned by satellites; empty: none. */
 function movedWords(by: string, turn: string): string {
   if (by !== "" && turn !== "") return t("anchor.moves_and_turns", { distance: by, angle: turn });
   if (by !== "") return t("anchor.moves", { distance: by });

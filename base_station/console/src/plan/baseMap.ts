@@ -9,10 +9,10 @@ import type { Place } from "./tools";
 
 export const baseMap = signal<BaseMap | null>(null);
 
-/** Others may set and remove it; live pictures do not carry it. */
+/** Other consoles may set and remove it; live pictures do not contain it. */
 export const AGAIN_MS = 20_000;
 
-/** Ask for it, now and then again; the result ends it. */
+/** Requests it periodically until the returned function is called. */
 export function keepBaseMap(): () => void {
   const look = () => void lookAgain().catch(() => undefined); // the one that is shown stays
   look();
@@ -40,7 +40,7 @@ export function crsOf(epsg: string, world: readonly number[]): string {
   return world.slice(4).some((value) => Math.abs(value) > 180) ? "EPSG:3857" : "EPSG:4326";
 }
 
-/** Where a part of the picture, from the left and from the top, lies on the Earth. */
+/** Place on the Earth of a point of the picture, given from the left and from the top. */
 export function earthAt(map: BaseMap, across: number, down: number): LatLon {
   const along = (axis: 0 | 1) =>
     map.upper_left[axis] +
@@ -67,7 +67,7 @@ export class BaseMapLayer extends PictureLayer {
   }
 }
 
-/** Keeps the layer at what is known. */
+/** Keeps the layer up to date. */
 export function followBaseMap(layer: BaseMapLayer, anchor: () => AnchorView | null): () => void {
   return effect(() => layer.show(baseMap.value, anchor()));
 }

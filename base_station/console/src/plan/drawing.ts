@@ -61,7 +61,7 @@ export function pixelAt(scale: Scale, [east_m = 0, north_m = 0]: readonly number
   return { x: scale.one.x + (east_m - scale.east_m) / per, y: scale.one.y - (north_m - scale.north_m) / per };
 }
 
-/** Of the plan, or as usual: a storey above the floor below. */
+/** From the plan, or by default a storey above the floor below. */
 export function downOf(plan: Plan | null, floor: number): number {
   const listed = plan?.muster.floors?.find((one) => one.floor === floor);
   return listed?.down_m ?? 0 - floor * STOREY_M;

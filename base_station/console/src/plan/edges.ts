@@ -1,4 +1,4 @@
-/** Where the plan's edge points to members in danger who are outside the view.  Pure. */
+/** Arrows at the plan's edge towards members in danger outside the view.  Pure. */
 import { t } from "../language/translate";
 import type { Box, Pixel } from "./names";
 
@@ -21,8 +21,8 @@ const INSET_PX = 28;
 const CUT_PX = 6;
 const STEP_PX = 8;
 
-/** Of these, who is outside; one for each, beside one another and beside what covers the plan, as near as
- * that goes to the straight way to the member. */
+/** Arrows for those outside the view; without overlap with each other and with controls, as near as
+ * possible to the straight line to the member. */
 export function edgeMarks(people: readonly Outside[], size: Pixel, covered: readonly Box[]): EdgeMark[] {
   const [right, down] = size;
   if (right <= 2 * INSET_PX || down <= 2 * INSET_PX) return [];

@@ -14,8 +14,8 @@ export interface Region {
   heading_rad: number;
 }
 
-/** The station says how far somebody may have got whom it does not hear; the console goes on with
- * that for the time in which it does not hear the station. */
+/** The station states the region of a unit that it does not receive; the console continues to widen it
+ * while the station is not received. */
 export function regionAt(position: PositionView, silentMs: number): Region {
   const roamedM = Math.min((ROAMING_MPS * silentMs) / 1000, ROAMING_MOST_M);
   return {
@@ -29,7 +29,8 @@ export function isOld(position: PositionView, nowMs: number): boolean {
   return nowMs - position.t_ms >= OLD_MS;
 }
 
-/** Where somebody can be: what the walls leave to a wearer who is not heard, else the ellipse. */
+/** The possible region of a person: the reachable area within the walls of a wearer who is not received,
+ * else the ellipse. */
 export function outline(
   centre: readonly [number, number],
   position: PositionView,

@@ -4,7 +4,7 @@ import { listed } from "../language/measures";
 import type { ExternalMarkerView } from "../wire";
 import { t } from "../language/translate";
 
-/** From then on nobody knows whether it is still there. */
+/** Age from which its presence is uncertain. */
 export function isStale(one: ExternalMarkerView, nowMs: number): boolean {
   return nowMs >= one.stale_ms;
 }

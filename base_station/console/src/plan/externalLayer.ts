@@ -1,5 +1,4 @@
-/** People and markers of other teams: diamonds with dashed regions, so that nobody takes them for our
- * own. */
+/** People and markers of other teams: diamonds with dashed regions, to distinguish them from own ones. */
 import Feature from "ol/Feature";
 import Circle from "ol/geom/Circle";
 import Point from "ol/geom/Point";

@@ -44,7 +44,7 @@ export class FloorPictureLayer extends PictureLayer {
     return all;
   }
 
-  /** Of all floors, that of the ground is shown, or the one nearest to it. */
+  /** With all floors shown, the picture of the ground floor, or of the nearest one. */
   private look(): void {
     const byHeight = [...this.pictures].sort((a, b) => Math.abs(a.floor) - Math.abs(b.floor));
     const wanted = this.floor === "all" ? byHeight[0] : byHeight.find((one) => one.floor === this.floor);
@@ -60,7 +60,7 @@ export class FloorPictureLayer extends PictureLayer {
   }
 }
 
-/** Plans of earlier versions may have had anything there. */
+/** Plans of earlier versions may contain any value here. */
 function isPicture(one: unknown): one is FloorPicture {
   const { webp, upper_left_m, upper_right_m, lower_left_m } = (one ?? {}) as Partial<FloorPicture>;
   return typeof webp === "string" && [upper_left_m, upper_right_m, lower_left_m].every(Array.isArray);

@@ -4,11 +4,11 @@ import { floor, type FloorChoice } from "../uiState";
 import type { Picture } from "../live/picture";
 import { firstFloor, floorsOf } from "./floors";
 
-/** Who comes back from a replay finds the live plan as it was left. */
+/** After a replay the live plan is shown as before. */
 const leftAt = new WeakMap<Picture, FloorChoice>();
 
-/** Where it was left; else the first floor as soon as somebody is on one.  After that, and where there
- * is nobody yet, the person chooses.  The result ends it. */
+/** The last shown floor; else the initial one as soon as people are located.  After that, and before, the
+ * user chooses.  The returned function ends it. */
 export function beginOnAFloor(picture: Picture): () => void {
   const before = leftAt.get(picture);
   if (before !== undefined) floor.value = before;

@@ -11,8 +11,8 @@ export interface Floor {
   endangered: number; // of them
 }
 
-/** Top floor first, as in a building: those of the plan, those where somebody is, and the one that is
- * looked at, also when the last one has left it. */
+/** Top floor first, as in a building: floors of the plan, floors with people, and the shown one, also
+ * when it is empty. */
 export function floorsOf(
   plan: Plan | null,
   units: readonly UnitView[],
@@ -34,7 +34,7 @@ export function floorsOf(
     });
 }
 
-/** The floor to begin with: where most people are, the lower one of equals. */
+/** The initial floor: the one with most people, the lower one of equals. */
 export function firstFloor(floors: readonly Floor[]): number | null {
   let best: Floor | null = null;
   for (const floor of floors) {
@@ -43,21 +43,21 @@ export function firstFloor(floors: readonly Floor[]): number | null {
   return best?.floor ?? null;
 }
 
-/** What the drawing does not say of somebody: another floor than the one shown, or one that nobody knows;
- * where all floors are shown, each one's. */
+/** The floor in addition to a mark: another than the shown one, or an unknown one; with all floors shown,
+ * that of every mark. */
 export function floorRemark(position: PositionView, shown: FloorChoice, old = false): string {
   if (!isFloorLikely(position)) return floorName(null);
   return position.floor === shown ? "" : floorOf(position, old);
 }
 
-/** From the floor shown up to the one where somebody probably is; 0: the same, or nobody knows. */
+/** Number of floors from the shown one up to the probable one of a person; 0: the same, or unknown. */
 export function floorsUp(position: PositionView, shown: FloorChoice): number {
   if (shown === "all" || position.floor === null || !isFloorLikely(position)) return 0;
   return position.floor - shown;
 }
 
-/** Beside the mark of somebody on another floor than the one shown: "▲2" is two floors up.  Where all
- * floors are shown, beside each mark: the floor, as on its button. */
+/** Beside the mark of a person on another floor than the shown one: "▲2" is two floors up.  With all
+ * floors shown, beside each mark: the floor, as on its button. */
 export function floorBadge(position: PositionView, shown: FloorChoice): string {
   if (shown === "all") {
     return position.floor === null || !isFloorLikely(position) ? "?" : shortFloor(position.floor);

@@ -1,4 +1,4 @@
-/** Keeps the plan as the picture is, a few times a second at most. */
+/** Updates the plan to the picture, a few times a second at most. */
 import { computed, effect } from "@preact/signals";
 import { shownTheme } from "../appearance";
 import { units } from "../language/measures";
@@ -19,7 +19,7 @@ import { clicked, tool } from "./tools";
 
 const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 
-/** Begin to follow; the result ends it. */
+/** Starts the updates; the returned function ends them. */
 export function follow(map: PlanMap, picture: Picture): () => void {
   const redraw = atMostEvery(REDRAW_MS, () =>
     guarded(t("frame.plan"), () =>
@@ -99,14 +99,14 @@ export function follow(map: PlanMap, picture: Picture): () => void {
   return () => ends.forEach((end) => end());
 }
 
-/** An effect that fails costs itself, and is tried again with the next change. */
+/** A failing effect affects no other, and is tried again with the next change. */
 function following(what: PlainKey, work: () => void): () => void {
   return effect(() => {
     guarded(t(what), work);
   });
 }
 
-/** The pin or beacon that is being looked at. */
+/** The selected pin or beacon. */
 function chosenOnPlan(): string | null {
   const now = tool.value;
   if (now?.kind === "edit-pin") return now.pinId;

@@ -1,4 +1,4 @@
-/** A metre grid behind everything: the plan's paper, and all there is where no plan is known. */
+/** A metre grid behind all layers: the background of the plan, and the only layer without one. */
 import Layer from "ol/layer/Layer";
 import type { FrameState } from "ol/Map";
 import type { Colours } from "./colours";
@@ -53,7 +53,7 @@ export class Grid extends Layer {
   }
 }
 
-/** Where lines cross an axis of `length` pixels whose middle is `centre` pixels from the origin. */
+/** Positions of grid lines on an axis of `length` pixels whose middle is `centre` pixels from the origin. */
 function lines(length: number, stepPx: number, centre: number): number[] {
   const first = centre - length / 2;
   const start = Math.ceil(first / stepPx) * stepPx - first;

@@ -1,5 +1,5 @@
-/** Draws what was brought in: dashed trails with a square at their end, and photographs as pins with a
- * small picture, so that nobody takes them for what this station has measured. */
+/** Draws imported data: dashed trails with a square at their end, and photographs as pins with a small
+ * picture, so that they are not taken for measurements of this station. */
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";
 import Point from "ol/geom/Point";
@@ -15,7 +15,7 @@ import { emptied } from "./emptied";
 import { countUntil, placeAt } from "./imports";
 import { trailLines, TRAIL_MS } from "./trail";
 
-/** Receivers of others may save a point a minute. */
+/** External receivers may save one point a minute. */
 const MOST_STEP_MS = 120_000;
 const PICTURE_PX = 72;
 const STEM_PX = 14;
@@ -73,7 +73,7 @@ export class ImportLayer {
     this.source.addFeature(mark);
   }
 
-  /** From its time on. */
+  /** Shown from its time on. */
   private addPhoto(
     name: string,
     url: string,

@@ -7,18 +7,18 @@ import type { TrailPoint } from "../wire";
 
 export const imports = signal<readonly ImportedTracks[]>([]);
 export const areImportsShown = signal(true);
-/** Whether the station could not say what was brought in. */
+/** Whether the station could not list the imports. */
 export const importsFailed = signal(false);
-/** Counts up when something is brought in or taken out. */
+/** Counts up with each import and removal. */
 export const importsChanged = signal(0);
 
-/** Whoever gave a track has moved on by then, or the receiver was off. */
+/** Age from which the last point of a track is no current position. */
 const LAST_PLACE_MS = 60_000;
 
-/** The incident that is looked at: an answer may come when somebody has gone to another. */
+/** The shown incident: an answer may arrive after a change to another one. */
 let followed = "";
 
-/** Ask for them with each other incident; the result ends it. */
+/** Requests them after each change of the incident until the returned function is called. */
 export function followImports(picture: Picture): () => void {
   return effect(() => {
     const incidentId = picture.incident.value?.incident_id ?? "";

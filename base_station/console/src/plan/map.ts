@@ -35,17 +35,17 @@ const CLOSE_M_PER_PX = 0.06;
 const MOVING_KEYS = /^(Arrow.*|[+-])$/;
 const MOVE_MS = 250;
 const AROUND_M = 2;
-/** Nobody alone fills the screen with the few metres about them. */
+/** Smallest extent of a fit, so that one person does not fill the screen with a few metres. */
 const FITTED_M_PER_PX = 0.02;
 
-/** What a person does on the plan. */
+/** Interactions with the plan. */
 export interface PlanEvents {
   select(unitId: string): void;
-  /** A click anywhere; true where a tool took it. */
+  /** A click at any place; true if a tool has used it. */
   click(place: Place): boolean;
   choose(standing: Standing): void;
   moved(standing: Standing, place: Place): void;
-  /** Towards whom the plan's edge points now. */
+  /** Members to whom arrows at the plan's edge point. */
   outside(marks: readonly EdgeMark[]): void;
 }
 
@@ -72,7 +72,7 @@ export class PlanMap {
     showFullExtent: true,
   });
   private readonly map: OlMap;
-  /** Whether the person chose what to look at; until then everybody is kept in view. */
+  /** Whether the user has moved the view; until then all members are kept in view. */
   private chosen = false;
   private fitted = false;
   private people: Omit<Scene, "colours" | "screen"> | null = null; // as last shown
@@ -160,7 +160,7 @@ export class PlanMap {
     return found ?? null;
   }
 
-  /** The pin or beacon that was chosen can be drawn to another place. */
+  /** The chosen pin or beacon can be dragged. */
   private dragging(): Translate {
     const translate = new Translate({
       layers: [this.pins.layer],
@@ -238,12 +238,12 @@ export class PlanMap {
     });
   }
 
-  /** Null before anything is drawn. */
+  /** Null before the first drawing. */
   private pixelOf(at: number[]): Pixel | null {
     return this.map.getPixelFromCoordinate(at) as [number, number] | null;
   }
 
-  /** Not so while another part of a small screen is shown. */
+  /** False while another part of a small screen is shown. */
   private isSeen(): boolean {
     return this.map.getSize()?.every((pixels) => pixels > 0) ?? false;
   }
@@ -264,7 +264,7 @@ export class PlanMap {
     return containsExtent(this.view.calculateExtent(size), needed);
   }
 
-  /** Show everything there is; false where there is nothing yet. */
+  /** Shows all contents; false if there are none yet. */
   fit(smoothly = true): boolean {
     const all = createEmpty();
     for (const part of [this.building.extent(), this.floorPicture.extent(), this.peopleLayer.extent()]) {

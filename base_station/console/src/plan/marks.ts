@@ -5,7 +5,7 @@ import { t } from "../language/translate";
 import { faint, type Colours } from "./colours";
 import type { Context } from "./sprites";
 
-/** What the plan needs to know of one person. */
+/** Data of one person for the plan. */
 export interface Mark {
   name: string;
   initials: string;
@@ -29,7 +29,7 @@ const RADIUS_PX = 13;
 const DANGER_RADIUS_PX = 17; // has room for the initials beside "!"
 const ARROW_PX = 10;
 export const HALO_PX = 4;
-/** From the middle of a mark, the farthest that anything of it is drawn. */
+/** Largest distance of any part of a mark from its middle. */
 export const MARK_REACH_PX = DANGER_RADIUS_PX + ARROW_PX + 3;
 
 /** How the way walked is drawn. */
@@ -38,19 +38,20 @@ export function trailLook({ chosen, urgency }: Mark, colours: Colours): { color:
   return { color: faint(colour, chosen ? 0.95 : 0.55), widthPx: chosen ? 3.5 : 2.5 };
 }
 
-/** What is old is pale, but not where somebody is in danger: that is looked for first. */
+/** Old marks are pale, except of members in danger. */
 export function colourOf({ old, urgency }: Mark, colours: Colours): string {
   return old && urgency !== "immediate" ? colours.quiet : colours[urgency];
 }
 
-/** In the mark: "!" is danger, "?" an old place.  Of several in danger, the initials tell who is who. */
+/** In the mark: "!" is danger, "?" an old position.  Several members in danger are distinguished by their
+ * initials. */
 export function lettersOf({ old, urgency, initials }: Pick<Mark, "old" | "urgency" | "initials">): string {
   const danger = urgency === "immediate";
   if (old && !danger) return "?";
   return danger ? `!${old ? "?" : ""}${initials}` : initials;
 }
 
-/** Only what is on the floor shown, and new, is filled. */
+/** Only current marks on the shown floor are filled. */
 export function isHollow({ old, floorsUp }: Pick<Mark, "old" | "floorsUp">): boolean {
   return old || floorsUp !== 0;
 }
@@ -69,7 +70,7 @@ export function isStrong({ chosen, urgency }: Mark): boolean {
   return chosen || urgency === "immediate";
 }
 
-/** The name as it is written, its middle at the origin. */
+/** Draws the name with its middle at the origin. */
 export function drawName(context: Context, mark: Mark, colours: Colours): void {
   context.font = labelFont(mark);
   context.textAlign = "center";
@@ -82,13 +83,13 @@ export function drawName(context: Context, mark: Mark, colours: Colours): void {
   context.fillText(labelOf(mark), 0, 0);
 }
 
-/** Over others: who is chosen, then who is in danger. */
+/** Drawing order above others: the chosen member, then members in danger. */
 export function rankOf({ chosen, urgency }: Mark): number {
   if (chosen) return 3;
   return urgency === "immediate" ? 2 : 1;
 }
 
-/** All that makes a mark look different from another, but for where it heads. */
+/** Key of the appearance of a mark, without its heading. */
 export function looksOf(mark: Mark): string {
   const { urgency, chosen, old, floorBadge } = mark;
   return [urgency, chosen, isHollow(mark), old, lettersOf(mark), floorBadge].join(" ");

@@ -1,4 +1,5 @@
-/** The names of people as the map's own layers know them, unseen: names of rooms and of other teams keep clear. */
+/** Invisible copies of people's names in the map's own layers, so that names of rooms and of other teams
+ * avoid them. */
 import Feature from "ol/Feature";
 import Point from "ol/geom/Point";
 import VectorLayer from "ol/layer/Vector";

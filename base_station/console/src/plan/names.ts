@@ -1,11 +1,11 @@
-/** Where the names of people stand on the plan: beside their marks, wholly on the screen, over nobody's
- * mark and no other name.  Pure. */
+/** Placement of names on the plan: beside their marks, completely on the screen, over no mark and no
+ * other name.  Pure. */
 
 /** Pixels from the plan's upper left corner, or, of a name's middle, from its mark. */
 export type Pixel = readonly [right: number, down: number];
 export type Box = readonly [left: number, top: number, right: number, bottom: number];
 
-/** What part of the plan is on the screen. */
+/** The visible part of the plan. */
 export interface Screen {
   size: Pixel;
   covered: readonly Box[]; // by what lies over the plan: a name there would not be read
@@ -36,7 +36,7 @@ const APART_PX = 25;
 const HALF_LINE_PX = 9;
 const EDGE_PX = 4;
 
-/** One for each, null where somebody is not named: there is no room, or they are beside the screen. */
+/** One for each person, null without a name: there is no room, or the person is outside the screen. */
 export function placeNames(
   people: readonly Named[],
   { size: screen, covered, standing }: Omit<Screen, "pixelOf">,
@@ -74,7 +74,8 @@ function placeAt(side: Side, one: Named, screen: Pixel): Place {
   return { side, offset: offsetTo(side, one, screen) };
 }
 
-/** Below and above, a name is pushed aside where the screen ends; of two ends it keeps to the left one. */
+/** Below and above its mark a name is shifted to stay on the screen; a name wider than the screen keeps
+ * its left end. */
 function offsetTo(side: Side, { mark: [x], widthPx }: Named, [right]: Pixel): Pixel {
   const half = widthPx / 2;
   if (side === "right") return [MARK_PX + EDGE_PX + half, 0];
@@ -83,7 +84,7 @@ function offsetTo(side: Side, { mark: [x], widthPx }: Named, [right]: Pixel): Pi
   return [middle - x, side === "below" ? APART_PX : -APART_PX];
 }
 
-/** What somebody's mark covers, and the name where there is one. */
+/** Area of a person's mark, and of the name if there is one. */
 export function boxesOf(one: Named, place: Place | null): Box[] {
   const mark = around(one.mark, MARK_PX, MARK_PX);
   return place === null ? [mark] : [mark, boxOf(one, place.offset)];
@@ -101,7 +102,7 @@ function isOn([x, y]: Pixel, [right, down]: Pixel): boolean {
   return x >= 0 && x <= right && y >= 0 && y <= down;
 }
 
-/** Looked at for hundreds of people, a few times a second. */
+/** Computed for hundreds of people, a few times a second. */
 function isClear(box: Box, taken: readonly (readonly Box[])[], [right, down]: Pixel): boolean {
   if (box[0] < 0 || box[1] < 0 || box[2] > right || box[3] > down) return false;
   return !taken.some((boxes) => boxes.some((one) => meet(box, one)));

@@ -1,5 +1,5 @@
-/** Trails that the station works out when asked: the unit's own path, and the best known since; and
- * with them what was shown, as far back. */
+/** Trails that the station computes on request: the unit's own path, and the smoothed one; and with them
+ * the shown one of the same time. */
 import { effect, signal } from "@preact/signals";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
@@ -21,7 +21,7 @@ export const pastTrails = signal<readonly PastTrails[]>([]);
 export const loadingKinds = signal<ReadonlySet<TrailKind>>(new Set());
 
 const AGAIN_MS = 20_000;
-/** The incident whose trails are drawn: an answer may come when somebody has gone to another. */
+/** The incident whose trails are drawn: an answer may arrive after a change to another incident. */
 let followed: string | null = null;
 
 export function toggle(kind: TrailKind): void {
@@ -30,7 +30,7 @@ export function toggle(kind: TrailKind): void {
   shownKinds.value = next;
 }
 
-/** Ask for what is shown, now and then again; the result ends it. */
+/** Requests the shown trails periodically until the returned function is called. */
 export function followTrails(picture: Picture): () => void {
   let timer: number | null = null;
   const stop = () => {

@@ -37,7 +37,7 @@ export interface Endangered {
   centre: [number, number];
 }
 
-/** As drawn, with where the name stands; null: nowhere. */
+/** As drawn, with the position of the name; null: none. */
 interface Drawn extends Shown {
   name: Place | null;
 }
@@ -59,7 +59,7 @@ export class PeopleLayer extends Layer {
     this.canvas.className = "people-canvas";
   }
 
-  /** Returns what people and their names cover of the screen. */
+  /** Returns the areas of the screen that people and their names cover. */
   show(scene: Scene): Box[] {
     const all = shownPeople(scene);
     const named = all.map(({ unitId, centre, looks }): Named => ({
@@ -82,7 +82,7 @@ export class PeopleLayer extends Layer {
     return named.flatMap((one, i) => boxesOf(one, places[i] ?? null));
   }
 
-  /** Where people are, without the regions about them; null: no person is shown. */
+  /** Extent of the people without their regions; null: no person is shown. */
   extent(): Extent | null {
     if (this.drawn.length === 0) return null;
     return extend(createEmpty(), boundingExtent(this.drawn.map(({ centre }) => centre)));
@@ -98,7 +98,7 @@ export class PeopleLayer extends Layer {
     return best === null ? null : { unitId: best.unitId, at: best.centre };
   }
 
-  /** With the rest of the map, where that is moved. */
+  /** Drawn with the rest of the map while that is moved. */
   override render(frame: FrameState | null): HTMLElement {
     if (frame === null) return this.canvas;
     this.frame = frame;
@@ -162,7 +162,7 @@ function fit(canvas: HTMLCanvasElement, context: Context, width: number, height:
   context.clearRect(0, 0, width, height);
 }
 
-/** Whether anything of a border may be on the screen. */
+/** Whether a part of a border may be on the screen. */
 function isSeen(border: readonly [number, number][], pixelOf: PixelOf, screen: Extent): boolean {
   if (border.length === 0) return false;
   const [left = 0, top = 0, right = 0, bottom = 0] = boundingExtent(border.map((at) => [...pixelOf(at)]));

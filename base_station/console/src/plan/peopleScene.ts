@@ -56,8 +56,8 @@ export function shownPeople(scene: Scene): Shown[] {
   return shown;
 }
 
-/** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who
- * is in danger. */
+/** People on the chosen or on an unknown floor; and on every floor the chosen member and members in
+ * danger. */
 function isShown(unit: UnitView, position: PositionView, scene: Scene): boolean {
   const danger = urgencyOf(unit, scene.alarms) === "immediate";
   return isHere(position, scene) || danger || unit.unit_id === scene.chosen;
@@ -67,13 +67,13 @@ function isHere({ floor }: PositionView, scene: Scene): boolean {
   return scene.floor === "all" || floor === null || floor === scene.floor;
 }
 
-/** Where somebody can have got to since is asked of who is looked for, and grows over the whole plan:
- * not of a unit that was switched off in order while its wearer was well. */
+/** The growing region since the last contact is drawn for missing members; not for a unit that was
+ * switched off normally while its wearer was well. */
 function isMissed(unit: UnitView, { urgency }: Mark): boolean {
   return unit.link === "live" || !unit.switched_off || urgency === "immediate";
 }
 
-/** In a crowd trails would hide the plan: those of whom somebody looks for remain. */
+/** Trails of many people would hide the plan: only those of members in danger and the chosen one remain. */
 function hasTrail({ chosen, urgency }: Mark, { units }: Scene): boolean {
   return units.length <= LABEL_LIMIT || chosen || urgency === "immediate";
 }

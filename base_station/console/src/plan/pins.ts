@@ -27,13 +27,13 @@ export interface PinScene {
   colours: Colours;
 }
 
-/** What stands at a place on the plan and can be moved. */
+/** A movable object on the plan. */
 export interface Standing {
   kind: "pin" | "beacon";
   id: string;
 }
 
-/** A pin that says whose it is. */
+/** A pin with the name of its member. */
 interface Labelled {
   pinId: string;
   text: string;
@@ -45,7 +45,7 @@ const LABEL_FONT = "600 13px system-ui, sans-serif";
 const RADIUS_95 = 2.447; // standard deviations that hold 95 % in a plane
 const STEM_PX = 20;
 const HEAD_PX = 7;
-/** What a pin covers above its place, and beside it; a beacon is no larger. */
+/** Size of a pin above and beside its place; a beacon is no larger. */
 export const PIN_HEIGHT_PX = STEM_PX + HEAD_PX + 2;
 export const PIN_HALF_PX = HEAD_PX + 2;
 
@@ -75,8 +75,8 @@ export class PinLayer {
     scene.clicked.forEach((place, i) => this.addClick(place, i, scene));
   }
 
-  /** Say whose pins they are, on the part of the plan that is on the screen and where nobody stands or
-   * is named; one that was chosen says so whatever it hides. */
+  /** Labels the pins on the visible part of the plan where no mark or name is; a chosen pin is always
+   * labelled. */
   name(screen: Screen, colours: Colours): void {
     const named = this.labelled.map(({ pinId, text, chosen, at }): Named => {
       const [right, down] = screen.pixelOf(at) ?? BESIDE;
@@ -109,13 +109,13 @@ export class PinLayer {
     return (feature.get("standing") as Standing | undefined) ?? null;
   }
 
-  /** Where pins and beacons stand. */
+  /** Positions of pins and beacons. */
   places(): number[][] {
     const standing = this.source.getFeatures().filter((one) => this.standing(one) !== null);
     return standing.map((one) => (one.getGeometry() as Point).getCoordinates());
   }
 
-  /** Only what was chosen can be dragged: who moves the plan moves no pin along. */
+  /** Only a chosen object can be dragged, so that panning the plan moves no pin. */
   isDraggable(feature: Feature): boolean {
     const standing = this.standing(feature);
     return standing !== null && standing.id === this.chosen;
@@ -156,7 +156,7 @@ export class PinLayer {
     this.source.addFeature(mark);
   }
 
-  /** Where the person has clicked with a tool. */
+  /** Points clicked with a tool. */
   private addClick(place: Place, index: number, { colours }: PinScene): void {
     const mark = new Feature({ geometry: new Point(siteCoordinate(place)) });
     mark.setStyle([
@@ -190,13 +190,13 @@ function pinColour(pin: PinView, colours: Colours): string {
   return pin.state === "waiting" ? colours.quiet : colours.chosen;
 }
 
-/** Somebody has to see to what contradicts; and of who is not heard, what was said last moves nobody
- * until positions come. */
+/** Pins that need attention: conflicting ones, and pins of a unit that is not received, which have no
+ * effect until positions come. */
 export function isNamed({ state, t_ms }: PinView): boolean {
   return state === "conflict" || (state === "waiting" && t_ms > 0);
 }
 
-/** Nobody is there now: it says that it is a pin. */
+/** Marked as a pin, as it is no current position. */
 export function pinWords(pin: PinView, name: string): string {
   const when = pin.t_ms === 0 ? t("mark.start") : clock(pin.t_ms, false);
   return t("mark.pin", { name: planLabel(name), when });

@@ -1,7 +1,7 @@
 import type { FeatureCollection } from "geojson";
 
 /** GeoJSON whose coordinates are `[east_m, north_m]` in the incident frame; `base_station/site/plan.py`
- * says more. */
+ * describes it. */
 export interface Plan extends FeatureCollection {
   muster: {
     frame: "site-m";

@@ -1,10 +1,10 @@
 /** Redrawing no more often than a drawing can be followed. */
 
 export const REDRAW_MS = 200;
-/** A drawing that takes long comes less often: this many times as long is left to everything else. */
+/** A slow drawing is repeated less often: this multiple of its duration is left to everything else. */
 const REST = 4;
 
-/** Do the work, at most once in each period, some time after it was asked for. */
+/** Runs the work at most once in each period, some time after the request. */
 export function atMostEvery(periodMs: number, work: () => void): { ask(): void; cancel(): void } {
   let timer: ReturnType<typeof setTimeout> | null = null;
   let tookMs = 0;

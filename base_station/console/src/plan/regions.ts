@@ -11,8 +11,8 @@ export interface DrawnRegion {
   border: readonly Coordinate[]; // closed; empty where none is to be drawn
 }
 
-/** Old regions of more people than this, in one colour, are drawn as one: each alone takes as long as
- * a screen that is filled, and together they would hide the plan. */
+/** Old regions of more people than this, of one colour, are drawn as one: each takes as long as a filled
+ * screen, and together they would hide the plan. */
 export const MOST_ALONE = 12;
 const HATCH_PX = 12;
 const MOST_FILLING = 0.18;
@@ -52,7 +52,7 @@ export class Regions {
     context.stroke();
   }
 
-  /** One filling for all, that is no darker where regions overlap; and no dashes: those of a hundred wide
+  /** One filling for all, not darker where regions overlap; without dashes, as those of a hundred wide
    * borders take seconds. */
   private drawCrowd(
     context: Context,
@@ -83,7 +83,7 @@ export class Regions {
   }
 }
 
-/** Whose region is drawn alone, and the borders of the others by colour. */
+/** Regions that are drawn separately, and the borders of the others by colour. */
 export function parted(
   regions: readonly DrawnRegion[],
   colours: Colours,

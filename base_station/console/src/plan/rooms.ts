@@ -9,8 +9,8 @@ import { siteCoordinate } from "./site";
 const WIDEST_M = 10;
 const FLOOR_CERTAIN = 0.95;
 
-/** "in store" where all of the region lies in the room, "near store" where only its middle does; empty
- * where the plan, the floor or the place is not known well enough. */
+/** "in store" if all of the region is in the room, "near store" if only its middle is; empty if plan,
+ * floor or position are not known well enough. */
 export function roomWord(plan: Plan | null, position: PositionView, region: Region): string {
   if (plan === null || position.floor === null || region.major_m > WIDEST_M) return "";
   if ((position.floor_probability ?? 1) < FLOOR_CERTAIN) return "";
@@ -27,8 +27,8 @@ export function roomWord(plan: Plan | null, position: PositionView, region: Regi
   return t(whole ? "plan.in_room" : "plan.near_room", { room: name });
 }
 
-/** Whether a place lies in an area, by counting the borders east of it; holes count by themselves.  What
- * has no place (RFC 7946) holds nobody. */
+/** Whether a point is in an area, by counting the borders east of it, which includes holes.  A feature
+ * without geometry (RFC 7946) contains no point. */
 function holds(area: Geometry | null, at: readonly [number, number]): boolean {
   return area !== null && ringsOf(area).filter((border) => isInside(border, at)).length % 2 === 1;
 }

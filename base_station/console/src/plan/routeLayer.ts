@@ -1,4 +1,4 @@
-/** Draws the way of a rescuer to a member who is down. */
+/** Draws the route of a rescuer to a casualty. */
 import Feature from "ol/Feature";
 import LineString from "ol/geom/LineString";
 import VectorLayer from "ol/layer/Vector";
@@ -15,7 +15,7 @@ export class RouteLayer {
   private readonly source = new VectorSource<Feature<LineString>>();
   readonly layer = new VectorLayer({ source: this.source });
 
-  /** On other floors than the chosen one it is faint; where no way is known it is dashed. */
+  /** Faint on other floors than the chosen one; dashed without a known route. */
   show(route: Route | null, floor: FloorChoice, colours: Colours): void {
     this.source.clear(true);
     if (route === null) return;

@@ -1,14 +1,12 @@
-/** Small drawings that are made once and copied from then on: a mark or a name on the plan costs a copy of
- * its pixels each time, not a drawing. */
+/** Cache of small drawings: a mark or a name on the plan is drawn once, and then its pixels are copied. */
 import type { Pixel } from "./names";
 
-/** Enough for the marks, headings and names of some hundred people; whose age is written has a new name each
- * second. */
+/** Enough for the marks, headings and names of some hundred people; labels with an age change each second. */
 const MOST = 2000;
 
 export type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
-/** What a sprite is drawn on; tests put their own in. */
+/** Canvas of a sprite; tests replace it. */
 export type Sheet = CanvasImageSource & { width: number; height: number };
 
 export class Sprites {
@@ -18,7 +16,7 @@ export class Sprites {
 
   constructor(private readonly make: (width: number, height: number, paint: (to: Context) => void) => Sheet | null = painted) {}
 
-  /** Sprites are of one density of pixels and one look, as that of the theme; with others all are made anew. */
+  /** Sprites belong to one pixel density and one theme; after a change all are drawn again. */
   begin(ratio: number, look: unknown): void {
     if (ratio === this.ratio && look === this.look) return;
     this.known.clear();

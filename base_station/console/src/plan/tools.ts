@@ -20,7 +20,7 @@ export type Tool =
   | { kind: "pins" }; // all of them, in words
 
 export const tool = signal<Tool | null>(null);
-/** Where the person has clicked since the tool was taken. */
+/** Points clicked since the tool was chosen. */
 export const clicked = signal<readonly Place[]>([]);
 
 export function take(next: Tool): void {
@@ -34,7 +34,7 @@ export function putDown(): void {
   tool.value = null;
 }
 
-/** Put it down where it is in the hand, else take it. */
+/** Ends the tool if it is active, else starts it. */
 export function toggle(next: Tool): void {
   if (tool.peek()?.kind === next.kind) putDown();
   else take(next);
@@ -42,7 +42,7 @@ export function toggle(next: Tool): void {
 
 const WITHOUT_PLACE: readonly Tool["kind"][] = ["meeting", "trails", "pins"];
 
-/** Whether a click on the plan says a place to the tool. */
+/** Whether a click on the plan gives a point to the tool. */
 export function wantsPlaces(now: Tool | null): boolean {
   return now !== null && !WITHOUT_PLACE.includes(now.kind);
 }

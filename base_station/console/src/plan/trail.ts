@@ -1,25 +1,24 @@
-/** The way walked, on one floor or on all: of everybody in the last minutes, of some from the beginning.
- * Pure. */
+/** Trails on one floor or on all: of every member for the last minutes, of some from the beginning. Pure. */
 import type { Urgency } from "../live/urgency";
 import type { FloorChoice } from "../uiState";
 import type { TrailPoint } from "../wire";
 
 export const TRAIL_MS = 5 * 60_000;
-/** Of who is chosen, and of who is in danger until that is resolved, all of it is drawn: it is the way to
- * them.  Of everybody that would hide the plan. */
+/** The complete trail is drawn for the chosen member and for members in danger until that is resolved: it
+ * is the way to them.  For all members it would hide the plan. */
 export function spanMs(chosen: boolean, urgency: Urgency = "normal"): number {
   return chosen || urgency === "immediate" ? Infinity : TRAIL_MS;
 }
-/** Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way. */
+/** A member at rest leaves a point every 15 s; over a longer gap the path is unknown. */
 export const GAP_MS = 20_000;
 
 type Joined = (before: TrailPoint, point: TrailPoint) => boolean;
-/** Of a trail as the station keeps it, which says where its gaps are. */
+/** Limit for a stored trail, which states its gaps. */
 export const joinedAsSaid: Joined = (_, point) => point[4] !== 1;
-/** Of one with all its points. */
+/** Limit for a trail with all its points. */
 export const joinedByTime: Joined = (before, point) => point[0] - before[0] <= GAP_MS;
 
-/** Lines of `[east_m, north_m]`, broken where the floor changes or nothing was heard. */
+/** Lines of `[east_m, north_m]`, interrupted at changes of the floor and at gaps. */
 export function trailLines(
   points: readonly TrailPoint[],
   nowMs: number,

@@ -109,7 +109,7 @@ function drawnFloor(
   };
 }
 
-/** They stand at their heights all the same. */
+/** Drawn at their heights all the same. */
 function unknownFloor(marks: readonly DrawnMark[]): DrawnFloor {
   const nowhere = { topPx: 0, bottomPx: 0, leftPx: 0, rightPx: 0 };
   return { floor: null, name: floorName(null), short: "?", height: "", expected: true, marks, ...nowhere };

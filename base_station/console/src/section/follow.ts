@@ -1,4 +1,4 @@
-/** Keeps the side section as the picture is, a few times a second at most, and only where it changes. */
+/** Updates the side section to the picture, a few times a second at most, and only where it changes. */
 import { effect, type Signal } from "@preact/signals";
 import { measureTextWidth } from "ol/render/canvas";
 import { gloves } from "../appearance";
@@ -30,7 +30,7 @@ export interface Window {
   heightPx: number;
 }
 
-/** Begin to follow; the result ends it. */
+/** Starts the updates; the returned function ends them. */
 export function followSection(
   picture: Picture,
   window: Signal<Window>,

@@ -68,7 +68,7 @@ export function storeyHeightM(levels: readonly Level[]): number {
   return stepsM.length === 0 ? STOREY_M : median(stepsM);
 }
 
-/** Height of the ground outside: that of the ground floor, or else where people began. */
+/** Height of the ground outside: that of the ground floor, or else of the starts of paths. */
 export function groundHeightM(levels: readonly Level[]): number {
   return levels.find(({ floor }) => floor === 0)?.heightM ?? 0;
 }

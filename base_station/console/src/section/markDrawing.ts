@@ -39,7 +39,7 @@ export interface Paper {
 
 const NAME_MARK_PX = 28; // for which the places of names are made
 
-/** Who stands alone is named where there is room, who is in danger, chosen or far away always. */
+/** A single person is named if there is room; a person in danger, chosen or far away always. */
 export function drawnMarks(placed: readonly SectionMark[], paper: Paper): DrawnMark[] {
   const { sheet, markPx, nowMs, textWidthPx } = paper;
   const beyond = Math.max(0, (markPx - NAME_MARK_PX) / 2);
@@ -67,7 +67,7 @@ export function drawnMarks(placed: readonly SectionMark[], paper: Paper): DrawnM
   });
 }
 
-/** Beside the mark: nothing for a number of people who are well. */
+/** Text beside the mark: none for a number of people who are well. */
 function nameOf({ members, beyond }: SectionMark, nowMs: number): string {
   const [first] = members;
   if (first === undefined || (members.length > 1 && beyond === 0 && !members.some(isStrong))) return "";
@@ -109,7 +109,7 @@ function letters(member: Member): string {
   return member.floor === null && !text.includes("?") ? `${text}?` : text;
 }
 
-/** Whose mark it is, and what the drawing shows of them. */
+/** Members of the mark, and their shown state. */
 function wordsOf(member: Member, nowMs: number): string {
   const words = [
     member.name,

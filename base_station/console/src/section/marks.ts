@@ -1,4 +1,4 @@
-/** Where people stand in a side section: at their heights, side by side or as a number where they would
+/** Placement of people in a side section: at their heights, side by side or as a number where they would
  * cover each other.  Pure. */
 import { isAlone, type Member } from "./members";
 
@@ -38,11 +38,11 @@ export interface SectionMark extends Place {
 
 const RANK = { immediate: 1, soon: 2, watch: 3, normal: 4 } as const;
 
-/** How far somebody joins others, in steps of a mark, where those in need leave no room. */
+/** Largest distance, in steps of a mark, at which a person joins others for lack of room. */
 const JOIN_STEPS = 3;
 
-/** Who is in need or chosen first: they have a mark of their own, moved aside if need be; all others
- * join whoever of their floor stands there. */
+/** Members in need and the chosen one first: they have a mark of their own, shifted if necessary; others
+ * join the marks of their floor. */
 export function sectionMarks(members: readonly Member[], sheet: Sheet, markPx: number): SectionMark[] {
   const stepPx = markPx + BAR_PX;
   const placed: SectionMark[] = [];
@@ -76,8 +76,8 @@ function markOf(member: Member, sheet: Sheet, markPx: number): SectionMark {
   };
 }
 
-/** Join the nearest of the same floor, of who has no mark of their own rather than of who has.  False: nobody
- * is as near. */
+/** Joins the nearest mark of the same floor, preferably one without a reserved mark.  False: there is
+ * none near enough. */
 function joinNearest(placed: SectionMark[], mark: SectionMark, nearPx: number): boolean {
   const own = mark.members.some(isAlone);
   let [best, nearest] = [-1, nearPx];

@@ -29,7 +29,7 @@ export interface Scene {
   chosen: string | null;
 }
 
-/** Everybody who has a position, by unit: their order does not change as they walk. */
+/** All people with a position, by unit: their order does not change as they walk. */
 export function membersOf(scene: Scene, headingRad: number): Member[] {
   return scene.units
     .flatMap((unit) => (unit.position === null ? [] : [memberOf(unit, unit.position, scene, headingRad)]))

@@ -66,7 +66,7 @@ export class StackCanvas {
     this.controls.addEventListener("change", turned);
   }
 
-  /** Free what the graphics memory holds. */
+  /** Frees the graphics memory. */
   close(): void {
     this.controls.dispose();
     empty(this.building);
@@ -91,7 +91,7 @@ export class StackCanvas {
     this.building.add(...lines(stairs, look.colours.wall, WALL_PX, FAINT));
   }
 
-  /** The whole building, from where it is seen now. */
+  /** The complete building in the current view. */
   fit(building: StackedBuilding): void {
     const { eastM, northM, upM } = building.bounds;
     const middle = ([from, to]: readonly [number, number]) => (from + to) / 2;

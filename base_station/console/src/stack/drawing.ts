@@ -66,7 +66,7 @@ export function drawnStack(input: StackInput): DrawnStack {
   return { markPx, floors: [...floors.reverse(), ...(elsewhere.length > 0 ? [floorUnknown(elsewhere)] : [])] };
 }
 
-/** They stand at their heights all the same. */
+/** Drawn at their heights all the same. */
 function floorUnknown(marks: readonly DrawnMark[]): StackedLabel {
   return { floor: null, name: floorName(null), short: "?", height: "", xPx: 0, yPx: 0, marks };
 }
@@ -78,7 +78,7 @@ function leftCornerPx({ slabs, heightM }: StackedFloor, { widthPx, heightPx, pix
   return { xPx: Math.round(clamp(x, 0, widthPx)), yPx: Math.round(clamp(y, 0, heightPx)) };
 }
 
-/** Those beyond the drawing stand at its edge. */
+/** People outside the drawing are drawn at its edge. */
 function sheetOf({ widthPx, heightPx, markPx, pixelOf }: StackInput): Sheet {
   const [leftPx, rightPx] = [EDGE_PX + markPx / 2, widthPx - EDGE_PX - markPx / 2];
   const x = (px: number) => clamp(px, leftPx, rightPx);

@@ -1,4 +1,4 @@
-/** Keeps the stacked floors as the picture is, a few times a second at most, and only where they change. */
+/** Updates the stacked floors to the picture, a few times a second at most, and only where they change. */
 import { computed, effect, signal, type ReadonlySignal, type Signal } from "@preact/signals";
 import { measureTextWidth } from "ol/render/canvas";
 import { gloves, shownTheme } from "../appearance";
@@ -30,7 +30,7 @@ export interface StackView {
   close(): void;
 }
 
-/** Draw the picture on a canvas, and follow it.  Raises an error where the browser has no WebGL. */
+/** Draws the picture on a canvas, and updates it.  Raises an error where the browser has no WebGL. */
 export function openStack(
   element: HTMLCanvasElement,
   picture: Picture,

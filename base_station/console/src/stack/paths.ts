@@ -13,7 +13,7 @@ export interface StackedPath {
   chosen: boolean;
 }
 
-/** The whole way of who is chosen or in danger; those of everybody would hide the floors. */
+/** The complete trails of the chosen member and of members in danger; those of all would hide the floors. */
 export function stackedTrails(
   scene: Scene,
   trails: ReadonlyMap<string, readonly TrailPoint[]>,

@@ -8,7 +8,7 @@ import { STRIPS, type Span, type Strip, type Timeline } from "./series";
 export interface Marks {
   /** Of a replay; null: what is live. */
   shownMs: number | null;
-  /** Where the person looks; null: nowhere. */
+  /** Moment under the pointer; null: none. */
   lookedAtMs: number | null;
 }
 
@@ -162,7 +162,7 @@ function seriesOf(strip: Strip): uPlot.Series {
   };
 }
 
-/** A line that does not change is in the middle, and no noise looks like a mountain. */
+/** Smallest range of the axis: a constant line is in the middle, and noise is not enlarged. */
 function rangeOf(strip: Strip): uPlot.Range.Function {
   const room = strip.stepped ? 0.5 : 0;
   const least = strip.stepped ? 1 : 2;
@@ -179,7 +179,7 @@ function distinct(values: uPlot.AlignedData[number] | undefined): number[] {
   return [...new Set(known)].sort((a, b) => a - b);
 }
 
-/** Without the dust of binary fractions. */
+/** Without rounding errors of binary fractions. */
 function tidy(value: number): number {
   return Math.round(value * 1000) / 1000;
 }

@@ -12,7 +12,7 @@ export interface Span {
   untilMs: number;
 }
 
-/** As the station gives it at most. */
+/** Limit of the station. */
 export const LONGEST_MS = 24 * 3_600_000;
 export const SHORTEST_MS = 10_000;
 
@@ -29,7 +29,7 @@ export interface Strip {
   range?: [number, number];
   /** A value with its unit. */
   text(value: number, of: Timeline): string;
-  /** The same on the axis, where that is shorter. */
+  /** The same on the axis, if that is shorter. */
   tick?(value: number, of: Timeline): string;
 }
 
@@ -76,7 +76,7 @@ export function valueAt({ t_ms, values }: TimelineColumn, atMs: number): number 
   return low === 0 ? null : (values[low - 1] ?? null);
 }
 
-/** A column in words, for who does not see the line: "20.1 °C to 180.0 °C"; null: it is empty. */
+/** A column in words, for screen readers: "20.1 °C to 180.0 °C"; null: it is empty. */
 export function extremes(strip: Strip, of: Timeline): string | null {
   const known = of[strip.column].values.filter((value) => value !== null);
   if (known.length === 0) return null;
@@ -85,7 +85,7 @@ export function extremes(strip: Strip, of: Timeline): string | null {
   return low === high ? low : t("timeline.range", { low, high });
 }
 
-/** At most what the station gives: the end of it. */
+/** The last part, at most as long as the station allows. */
 export function bounded({ fromMs, untilMs }: Span): Span {
   return { fromMs: Math.max(fromMs, untilMs - LONGEST_MS), untilMs };
 }

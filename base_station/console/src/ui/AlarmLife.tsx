@@ -24,7 +24,7 @@ interface Props {
   sinceMs: number; // times of its day are shown without the date
 }
 
-/** One alarm of the list: what was raised, and what became of it, by whom, why and when. */
+/** One alarm of the list: its raising and transitions, with user, reason and time. */
 export function AlarmLife({ alarm, picture, sinceMs }: Props) {
   const shown: ShownAlarm = picture.alarms.value.get(alarm.alarm_id) ?? alarm;
   const peak = peakText(alarm);
@@ -83,7 +83,7 @@ function Change({ change, word, sinceMs }: ChangeProps) {
   );
 }
 
-/** In a replay it leads there, with a little of what came before. */
+/** In a replay it seeks to the alarm, with a short lead. */
 function Moment({ atMs, sinceMs }: { atMs: number; sinceMs: number }) {
   const words = timeSince(sinceMs, atMs);
   const watched = replay.value;
@@ -127,7 +127,7 @@ function Actions({ alarm }: { alarm: ShownAlarm }) {
   );
 }
 
-/** Of several buttons with one text, which alarm this one is about. */
+/** Distinguishes buttons with the same text by their alarm. */
 function about(act: "on_plan" | "acknowledge" | "resolve", alarm: AlarmSentence): string {
   return t("alarm_list.about", { act: t(`alarm_list.${act}`), alarm: alarmText(alarm) });
 }

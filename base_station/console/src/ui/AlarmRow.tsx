@@ -25,7 +25,7 @@ interface Props {
   onFlood: () => void;
 }
 
-/** The alarms of one member, or of a flood: what is the matter, since when, and who deals with it. */
+/** The alarms of one member, or of a flood: kind, time, and acknowledging user. */
 export function AlarmRowView({ row, place, picture, onFlood }: Props) {
   const [first] = row.alarms;
   if (first === undefined) return null;
@@ -67,7 +67,7 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
   );
 }
 
-/** What stands first in a row; of another incident than the one that is shown, with its name. */
+/** Title of a row; for another incident than the shown one, with its name. */
 function headOf(row: AlarmRow, first: AlarmView, picture: Picture): string {
   const other = picture.otherIncidentOf(first.unit_id);
   const words = row.isFlood ? floodText(row) : textOf(first, picture);
@@ -110,7 +110,7 @@ function Figure({ alarm, picture }: { alarm: AlarmView; picture: Picture }) {
   return figure === "" ? null : <strong>{figure}</strong>;
 }
 
-/** A long name is cut; all of it is said to who points at it. */
+/** A long name is truncated; its tooltip has the full name. */
 function State({ words }: { words: string }) {
   return (
     <span class="state" title={words}>
@@ -119,7 +119,7 @@ function State({ words }: { words: string }) {
   );
 }
 
-/** Where there is a button to acknowledge, it says that nobody has. */
+/** Empty beside a button to acknowledge, which shows that it is unacknowledged. */
 function stateOf(row: AlarmRow, taken: boolean, hasButton: boolean): string {
   if (taken) return t("alarm.acknowledged_by", { who: takenBy(row) });
   return hasButton ? "" : t("alarm.not_acknowledged");
@@ -127,9 +127,8 @@ function stateOf(row: AlarmRow, taken: boolean, hasButton: boolean): string {
 
 type ActionProps = Pick<Props, "row" | "place"> & { words: string };
 
-/** One press acknowledges all of the row that is raised.  To resolve asks for the reason first: it stands
- * where the button to acknowledge was a moment ago.  The alarms of a flood are resolved one by one, as
- * listed. */
+/** One press acknowledges all raised alarms of the row.  Resolving asks for the reason first, as its
+ * button replaces that to acknowledge.  The alarms of a flood are resolved one by one, as listed. */
 function Action({ row, place, words }: ActionProps) {
   const ids = row.isFlood ? "" : row.alarms.map((alarm) => alarm.alarm_id).join(" ");
   const steady = useGuardedPress(`${place} ${ids}`);

@@ -10,8 +10,8 @@ import { AlarmRowView } from "./AlarmRow";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { SoundButton } from "./SoundButton";
 
-/** A zone of one height, whatever happens: nothing below it moves when alarms come and go.  What it has
- * no room for is listed over the page, one row an alarm, once that is asked for. */
+/** A zone of fixed height: nothing below it moves when alarms come and go.  Alarms without room are
+ * listed over the page on request, one row an alarm. */
 export function AlarmStrip({ picture }: { picture: Picture }) {
   const open = picture.openAlarms.value;
   const rows = alarmRows(open, (unitId) => picture.otherIncidentOf(unitId)?.incident_id ?? "");

@@ -17,8 +17,7 @@ const WITHOUT_INCIDENT_MS = 86_400_000;
 const LOOK_MS = 2_000;
 const MOST_ROWS = 100;
 
-/** Every alarm of the incident with its life, the newest first; in a replay, of the incident that is
- * shown. */
+/** Every alarm of the incident with its transitions, the newest first; in a replay, of the shown incident. */
 export function AlarmsDialog() {
   const shown = picture.value;
   return shown === null ? null : <AlarmList picture={shown} />;
@@ -66,7 +65,7 @@ function beginMs(alarms: readonly AlarmWithLife[]): number {
   return alarms[0]?.raised_ms ?? 0;
 }
 
-/** Asked again, at most so often, while alarms change; the past does not. */
+/** Interval of requests while alarms change; in a replay they do not. */
 function useReloadOnChange(shown: Picture, again: () => void): void {
   const seen = useRef(newestChangeMs(shown));
   useEffect(() => {

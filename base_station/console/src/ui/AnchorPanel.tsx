@@ -14,7 +14,7 @@ import { MapPicker } from "./MapPicker";
 import { ReplacePlace } from "./ReplacePlace";
 import { fields } from "./useLoaded";
 
-/** Where the plan lies on the Earth: two points of it, clicked, with latitude and longitude. */
+/** Georeference of the plan: two clicked points with latitude and longitude. */
 export function AnchorPanel({ picture }: { picture: Picture }) {
   const fit = useSignal<Fit | null>(null);
   const picked = useSignal<readonly LatLon[]>([]);

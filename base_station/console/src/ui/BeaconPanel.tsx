@@ -16,7 +16,7 @@ interface Props {
   beacon: BeaconView | null; // null: a new one
 }
 
-/** A beacon or tag hangs here: whoever passes it is known to have been near. */
+/** A beacon or tag is mounted here: members who pass it are known to have been near. */
 export function BeaconPanel({ picture, beacon }: Props) {
   const send = (event: SubmitEvent) => {
     const given = fields(event);

@@ -132,8 +132,8 @@ function ToRecords({ unit }: { unit: UnitView }) {
   );
 }
 
-/** For who comes by keys: the plan, on which this person is in the middle, stands behind all others'
- * cards.  There, Escape leads back (`PlanPanel.tsx`). */
+/** For keyboard users: moves the focus to the plan, centred on this member, past all other cards.  There,
+ * Escape leads back (`PlanPanel.tsx`). */
 function ToPlan() {
   const go = () => {
     pane.value = "plan";
@@ -146,7 +146,7 @@ function ToPlan() {
   );
 }
 
-/** Whoever was chosen, here, on the plan or by an alarm, is to be seen with all that can be done. */
+/** The chosen card, whether chosen here, on the plan or by an alarm, is visible with all its actions. */
 function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
   const card = useRef<HTMLLIElement>(null);
   const asked = chosen ? centring.value : 0;
@@ -218,8 +218,8 @@ function saysOverdue(alarm: AlarmView, unit: UnitView): boolean {
   return alarm.rule === format.MISSED_CHECK_IN && !isOfAnother(alarm, unit);
 }
 
-/** How far the position can be trusted: nothing to say while that is well.  That nothing is heard of a
- * unit that was switched off is no reason for a doubt; its place says how old it is. */
+/** Quality of the position: empty while it is good.  A unit that was switched off is not doubted for its
+ * silence; its position shows the age. */
 function Trust({ unit }: { unit: UnitView }) {
   const { level, reason } = unit.trust;
   const off = unit.switched_off && unit.link !== "live";
@@ -243,8 +243,7 @@ function NotNotifiable() {
   );
 }
 
-/** What the unit lacks by its own check: what matters to everybody, what is only weak to who looks
- * closer. */
+/** Failed items of the unit's own check: failures on every card, warnings on the chosen card. */
 function NotReady({ unit: { preflight, registered }, chosen }: { unit: UnitView; chosen: boolean }) {
   if (preflight === null || preflight.level === "ok" || !registered) return null;
   if (preflight.level === "warning" && !chosen) return null;

@@ -10,10 +10,10 @@ import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { useGuardedPress } from "./useGuardedPress";
 
-/** More than this have a line each in which there is room for the name alone. */
+/** Above this number each has a line with room for the name only. */
 const MANY = 6;
 
-/** Members who are down, above the list however far it is scrolled, each with what is the matter and where. */
+/** Casualties above the scrolled list, each with cause and position. */
 export function Casualties({ unitIds, picture }: { unitIds: readonly string[]; picture: Picture }) {
   if (unitIds.length === 0) return null;
   const many = unitIds.length > MANY ? "many" : "";
@@ -55,7 +55,7 @@ function Casualty({ unitId, place, picture }: Props) {
   );
 }
 
-/** In short: the card says the rest. */
+/** In short: the card shows the rest. */
 function placeOf({ position }: UnitView, nowMs: number): string {
   if (position === null) return t("card.not_located");
   const floor = format.isFloorLikely(position) ? position.floor : null;

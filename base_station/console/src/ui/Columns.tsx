@@ -1,6 +1,6 @@
 interface Props {
   names: readonly string[];
-  /** What the last column is for, where that is plain to see and has to be said aloud only. */
+  /** Title of the last column for screen readers only. */
   spoken?: string;
 }
 

@@ -62,8 +62,8 @@ export function CommandDialog({ kind }: { kind: api.CommandKind }) {
   );
 }
 
-/** Under *Evacuate now* the ticks of another order, or of an evacuation that is over, would be taken
- * for this one's.  An all clear is shown until all have answered it.  All orders of the incident stand
+/** Under *Evacuate now* answers to another order, or to an ended evacuation, would be taken for those to
+ * this one.  An all clear is shown until all have answered it.  All orders of the incident are listed
  * under *Message*. */
 function isShown(command: CommandView, kind: api.CommandKind, sentHere: readonly string[]): boolean {
   if (kind === "evacuate") {

@@ -25,7 +25,7 @@ const ICONS: Record<ShownState, IconName> = {
   ended: "cross",
 };
 
-/** How far a command has got with somebody. */
+/** State of a command at one member. */
 export function CommandState({ command, delivery }: UnitCommand) {
   const state = shownState(command, delivery);
   return (
@@ -42,8 +42,8 @@ interface Props {
   chosen: boolean;
 }
 
-/** On a person's card: what is asked of this person now; on the chosen one also what became of the
- * last signal of its place. */
+/** On a member's card: the open orders to the member; on the chosen one also the state of the last locate
+ * order. */
 export function OpenCommands({ unitId, picture, chosen }: Props) {
   const commands = current(picture.commands.value.values(), picture.incident.value);
   const open = openTo(unitId, newestFirst(commands));

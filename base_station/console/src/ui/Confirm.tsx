@@ -10,8 +10,7 @@ interface Props {
   onNo: () => void;
 }
 
-/** Whether somebody means what they pressed, in whose place this comes; the second of two presses in
- * haste is no answer. */
+/** Confirmation that replaces the pressed button; a quick second press does not answer it. */
 export function Confirm({ question, yes, onYes, onNo }: Props) {
   const askedMs = useRef(performance.now());
   const no = useRef<HTMLButtonElement>(null);
@@ -32,7 +31,7 @@ export function Confirm({ question, yes, onYes, onNo }: Props) {
   );
 }
 
-/** For the button that asks: it has the focus again once that was answered. */
+/** For the button that asks: it gets the focus back after the answer. */
 export function useFocusBack(isAsked: boolean): RefObject<HTMLButtonElement | null> {
   const button = useRef<HTMLButtonElement>(null);
   const wasAsked = useRef(isAsked);

@@ -13,8 +13,8 @@ interface Props {
   done: () => void;
 }
 
-/** Everybody by crew.  People are drawn to another crew, or pressed and then moved, as by keys and on
- * screens that are touched; a picture that is dropped on a person becomes the photo. */
+/** All people by crew.  People are dragged to another crew, or selected and moved by a button, for
+ * keyboards and touch screens; a picture dropped on a person becomes the photo. */
 export function CrewBoard({ people, done }: Props) {
   const picked = useSignal<ReadonlySet<string>>(new Set());
   const added = useSignal<readonly string[]>([]);
@@ -158,7 +158,7 @@ function Member({ person, isPicked, pick, done }: MemberProps) {
   );
 }
 
-/** One after the other: where one is refused, those before it stay moved, and the board shows it. */
+/** One after the other: after a refusal the previous ones stay moved, as the board shows. */
 async function moveAll(people: readonly api.Person[], crew: string): Promise<void> {
   for (const { person_id: personId, name, role } of people) {
     await api.changePerson(personId, { name, crew, role });

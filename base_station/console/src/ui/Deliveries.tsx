@@ -17,7 +17,7 @@ interface Props {
   picture: Picture;
 }
 
-/** How far an order has got: how many have answered, and first those who have not. */
+/** Progress of an order: number of answers, and first the members without one. */
 export function Deliveries({ command, picture }: Props) {
   return (
     <table class="deliveries stacked">
@@ -89,7 +89,7 @@ function Answer({ command, delivery, place, picture }: AnswerProps) {
   );
 }
 
-/** To one member; others answer, and move the row. */
+/** Repeats the order to one member; answers of others move the row. */
 function SendAgain({ command, delivery, name }: Named) {
   const once = useSinglePress();
   const { unit_id: unitId, repeated_ms: repeatedMs } = delivery;

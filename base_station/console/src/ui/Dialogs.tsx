@@ -35,7 +35,7 @@ export function Dialogs() {
   );
 }
 
-/** It would lie over everything else. */
+/** It would cover everything else. */
 function closeWith(fault: string): void {
   dialog.value = null;
   report(fault);
@@ -93,8 +93,8 @@ function Opened() {
   }
 }
 
-/** Keys go on where the dialog was opened, from whichever other dialog that led to it; where the menu
- * has closed over that entry, at the menu. */
+/** The focus returns to the button that opened the first of the dialogs; if the menu has closed over that
+ * entry, to the menu. */
 function useFocusBack(isOpen: boolean): void {
   useLayoutEffect(() => {
     if (!isOpen) return undefined;

@@ -11,8 +11,8 @@ import { ConfirmButton } from "./ConfirmButton";
 /** Numbers that were announced over an open incident; the dialog *Incidents* has them on. */
 const announced = new Set<string>();
 
-/** Offers to open an incident from a dispatch.  While one is open nothing on the screen may move for
- * another: that one is announced where messages stand, once. */
+/** Offers to open an incident from a dispatch.  While an incident is open a further dispatch must not
+ * move the screen: it is announced once as a notice. */
 export function DispatchBar({ picture }: { picture: Picture }) {
   const offers = isPast.value || !mayAct.value ? [] : offered(picture.dispatches.value);
   const incident = picture.incident.value;

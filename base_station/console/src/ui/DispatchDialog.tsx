@@ -136,7 +136,7 @@ function OpenForm({ dispatch, shown }: Props) {
   );
 }
 
-/** Of an incident that was opened without it: the station takes a position of nobody's by itself. */
+/** For an incident that was opened without it: the station accepts no position automatically. */
 function UsePosition({ dispatch, shown }: Props) {
   const place = anchorOf(dispatch, shown);
   const before = shown.anchor.value;

@@ -8,8 +8,8 @@ interface Done {
   words: JSX.Element;
 }
 
-/** The word of success of a form whose work is to be seen nowhere else.  The place is there before the
- * words, so that a screen reader hears them. */
+/** Success message of a form without another visible effect.  Its element exists before the text, so that
+ * screen readers announce it. */
 export function useDone(sentence: string): Done {
   const isDone = useSignal(false);
   return {

@@ -17,8 +17,8 @@ interface Props {
   done: () => void;
 }
 
-/** Deletes what is stored, for good: whoever wants that writes the name. It takes a while where the
- * log is long, and goes on without this page. */
+/** Deletes stored data permanently: confirmed by typing the name. It takes a while with a long log, and
+ * continues without this page. */
 export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
   const asked = useSignal(false);
   const button = useFocusBack(asked.value);

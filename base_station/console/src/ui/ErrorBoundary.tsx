@@ -3,7 +3,7 @@ import { cannotShow } from "../live/faults";
 import { Icon } from "./Icon";
 
 interface Props {
-  /** A card, panel or dialog, as a person calls it. */
+  /** Name of the card, panel or dialog for users. */
   what: string;
   /** A list holds nothing but entries. */
   as?: "div" | "li";

@@ -2,7 +2,7 @@ import { picture } from "../sessions";
 import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
 
-/** What its command says in the terminal, for who sees only the console. */
+/** Messages of its command in the terminal, for users of the console. */
 export function FlawsDialog() {
   const flaws = picture.value?.replay.value?.flaws ?? [];
   return (

@@ -5,7 +5,8 @@ import type { Sought } from "../live/finding";
 import { t } from "../language/translate";
 import { part } from "./listState";
 
-/** How many are on scene, and where; each press shows those alone, and the next one everybody again. */
+/** Number of members on scene, and by state; a press filters the list, and the next one shows all members
+ * again. */
 export function Headcount({ counts }: { counts: ReadonlySignal<Counts> }) {
   const { onScene, parts } = counts.value;
   return (

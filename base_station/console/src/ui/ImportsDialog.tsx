@@ -20,7 +20,7 @@ import { useSinglePress } from "./useGuardedPress";
 import { useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
 
-/** What was brought into an incident from elsewhere, and by whom. */
+/** Imported files of an incident, with the user. */
 export function ImportsDialog() {
   const incident = withImports.value;
   const incidentId = incident?.incident_id ?? "";
@@ -119,7 +119,7 @@ function FileName({ file, incidentId }: { file: ImportedFile; incidentId: string
   );
 }
 
-/** One file after the other: what is wrong with one does not hold up the next. */
+/** One file after the other: an error in one does not stop the next. */
 function AddForm({ incidentId, done }: { incidentId: string; done: () => void }) {
   const once = useSinglePress();
   const isBusy = useSignal(false);

@@ -218,7 +218,7 @@ function Dispatches() {
   );
 }
 
-/** Over open alarms or people inside, only by their names. */
+/** With open alarms or people inside, only by naming them. */
 function CloseButton({ incident, done }: { incident: IncidentView; done: () => void }) {
   const picture = live.value?.picture;
   if (picture === undefined) return null;
@@ -303,7 +303,7 @@ function OpenForm({ done, beside = false }: OpenProps) {
   );
 }
 
-/** Other times while the incident runs. */
+/** Change of the times during an incident. */
 function TimesForm({ incident }: { incident: IncidentView }) {
   const done = useDone(t("incident.times_changed"));
   return (
@@ -322,7 +322,7 @@ function TimesForm({ incident }: { incident: IncidentView }) {
   );
 }
 
-/** The browser would leave the console for an answer that is a refusal. */
+/** With a plain link the browser would leave the console for a refusal. */
 async function save(content: Promise<Blob>, name: string): Promise<void> {
   saveAs(name, await content);
 }
@@ -335,7 +335,7 @@ interface DownloadsProps {
 const WHOLE = "mcap";
 const WITH_RADIO = "mcap with radio";
 
-/** An incident for other programs: its tracks, or all of it. */
+/** Export of an incident for other programs: its tracks, or all data. */
 function Downloads({ incident, formats }: DownloadsProps) {
   const writing = useSignal(false);
   const files = KINDS.flatMap((kind) => formats.map((format) => ({ kind, format })));
@@ -380,7 +380,7 @@ function Downloads({ incident, formats }: DownloadsProps) {
   );
 }
 
-/** What happened, as a document to hand over. */
+/** Report of the incident as a document. */
 function Report({ incident }: { incident: api.Incident }) {
   const writing = useSignal(false);
   const write = async (suffix: "html" | "pdf") => {

@@ -8,7 +8,7 @@ import { rich, t } from "../language/translate";
 import { Icon } from "./Icon";
 import { OtherConsole } from "./StandbyBar";
 
-/** When the station cannot be heard, nothing on the screen may look as if it were now. */
+/** When the station is not received, nothing on the screen may look current. */
 export function LinkBanner({ picture }: { picture: Picture }) {
   const lost = useLost(picture);
   if (lost === null) return null;
@@ -27,7 +27,7 @@ export function LinkBanner({ picture }: { picture: Picture }) {
   );
 }
 
-/** The same in a dialog, behind which the banner stands. */
+/** The same in a dialog, which covers the banner. */
 export function LinkLost() {
   const watched = live.value?.picture;
   return watched === undefined ? null : <LostInDialog picture={watched} />;
@@ -43,7 +43,7 @@ function LostInDialog({ picture }: { picture: Picture }) {
   );
 }
 
-/** That it is lost, and since when; null while it is not. */
+/** Text of a lost link with its time; null while the link is up. */
 function useLost(picture: Picture): JSX.Element | null {
   const link = picture.link.value;
   const age = useSignal("");

@@ -11,14 +11,14 @@ const FOR_COMMANDERS: readonly [DialogName, PlainKey][] = [
   ["site", "menu.site"],
 ];
 
-/** What is managed and not watched; behind one button where there is no room. */
+/** Menu of management dialogs; behind one button where there is no room. */
 export function Menu() {
   const open = useSignal(false);
   const whole = useRef<HTMLDivElement>(null);
   const button = useRef<HTMLButtonElement>(null);
   useEffect(() => {
     if (!open.value) return undefined;
-    // Open, it lies over the alarms: it goes with whatever is done beside it.
+    // Open, it covers the alarms: it closes with any press outside.
     const leave = ({ target }: Event) => {
       if (target instanceof Node && !whole.current?.contains(target)) open.value = false;
     };

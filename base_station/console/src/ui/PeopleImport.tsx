@@ -12,7 +12,7 @@ import { Waiting } from "./Waiting";
 const MOST_FAULTS = 20; // that anybody corrects before the next look
 const MOST_ROWS = 100;
 
-/** People of a file: looked at first, and then all of them taken, or nobody. */
+/** Import of people from a file: a preview first, and then all of them or none. */
 export function PeopleImport({ file, done }: { file: File; done: () => void }) {
   const shown = useSignal<{ file: File; found: api.PeopleImport } | null>(null);
   const single = useSinglePress();

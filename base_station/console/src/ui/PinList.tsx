@@ -9,7 +9,7 @@ import { listed } from "../language/measures";
 import { label, t } from "../language/translate";
 import { PanelActions } from "./PanelActions";
 
-/** All pins and beacons in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
+/** All pins and beacons as a list: meetings are not on the plan, and keyboard users have no pointer. */
 export function PinList({ picture }: { picture: Picture }) {
   return (
     <section class="tool-panel pin-list" aria-label={t("pin.list")}>

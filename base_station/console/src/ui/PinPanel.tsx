@@ -133,7 +133,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
 
 const MANY = 6;
 
-/** Forty names would push the notice out of sight. */
+/** Forty names would push the notice off the screen. */
 function Everybody({ names }: { names: readonly string[] }) {
   const all = listed(names) || t("pin.nobody");
   if (names.length <= MANY) return <p>{all}</p>;
@@ -204,7 +204,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
 const MINUTES_AGO = [0, 1, 2, 3, 5, 10, 15, 20, 30];
 const AS_SET = ""; // the time that stands there already
 
-/** When that was; `set` is the time of a pin that is changed. */
+/** Time of the pin; `set` is the time of a pin that is edited. */
 function WhenField({ set }: { set: number | null }) {
   return (
     <label>
@@ -223,7 +223,7 @@ function WhenField({ set }: { set: number | null }) {
   );
 }
 
-/** Null where it was just now: the station knows better when that is. */
+/** Null for now: the station sets the time. */
 function timeOf(given: Record<string, string>, picture: Picture): number | null {
   const ago = Number(given["when"] ?? "0");
   return ago === 0 ? null : Math.round(picture.nowMs.peek() - ago * 60_000);

@@ -6,7 +6,7 @@ import { floorName } from "../format";
 import { length } from "../language/measures";
 import { t } from "../language/translate";
 
-/** Where on the plan: clicked, or typed by who has no pointer. */
+/** Position on the plan: clicked, or typed by keyboard users. */
 export function PlaceFields({ start }: { start?: Place }) {
   const at = clicked.value.at(-1) ?? start;
   return (
@@ -39,7 +39,7 @@ interface FloorFieldProps {
   start: number | null | undefined; // undefined: nobody has said yet
 }
 
-/** On which floor; to begin with the one that is shown. */
+/** Floor of the position; initially the shown one. */
 export function FloorField({ picture, start }: FloorFieldProps) {
   const floorsShown = floorsOf(picture.plan.value, picture.allUnits(), new Map(), floor.value);
   const known = floorsShown.map((one) => one.floor);
@@ -65,7 +65,7 @@ export function FloorField({ picture, start }: FloorFieldProps) {
 
 const WITHIN_M = [0.5, 1, 2, 4, 10, 20];
 
-/** How sure that place is; the station wants the standard deviation, people say "within". */
+/** Uncertainty of the position; the API has the standard deviation, the form the 95 % radius ("within"). */
 export function WithinField({ startM }: { startM: number }) {
   const choices = [...new Set([...WITHIN_M, startM])].sort((a, b) => a - b);
   return (
@@ -82,8 +82,8 @@ export function WithinField({ startM }: { startM: number }) {
   );
 }
 
-/** The fields of a submitted form as numbers and places; where nobody changed it, a place is
- * exactly what it was at the start. */
+/** The fields of a submitted form as numbers and positions; an unchanged position is exactly the initial
+ * one. */
 export function placeOf(given: Record<string, string>, start?: Place) {
   const metres = (text: string | undefined, before: number | undefined) =>
     before !== undefined && text === inTenths(before) ? before : Number(text);

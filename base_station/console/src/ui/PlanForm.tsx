@@ -73,7 +73,7 @@ function parsed(text: string): Partial<Plan> {
     const said: unknown = JSON.parse(text);
     if (typeof said === "object" && said !== null) return said;
   } catch {
-    // Said below, as of any other file that is none.
+    // Reported below, as for any other invalid file.
   }
   throw new ApiError(t("plan_form.not_geojson"), 0);
 }

@@ -95,13 +95,13 @@ export function PlanPanel({ picture }: { picture: Picture }) {
   );
 }
 
-/** What of the plan the station could not read, and leaves out. */
+/** Parts of the plan that the station could not read, and leaves out. */
 function Damage({ picture }: { picture: Picture }) {
   const damage = picture.plan.value?.muster.damage ?? "";
   return damage === "" ? null : <p class="cannot-show plan-damage">{damage}.</p>;
 }
 
-/** To the card that led here, or that of whoever was chosen here. */
+/** Moves the focus to the card that led here, or that of the member chosen here. */
 function backToCard(): void {
   pane.value = "people";
   requestAnimationFrame(() => document.querySelector<HTMLElement>(".chosen .card-head")?.focus());
@@ -127,7 +127,7 @@ function eventsOf(picture: Picture, outside: Signal<readonly EdgeMark[]>): PlanE
   };
 }
 
-/** A pin or beacon was drawn to another place; refused, it goes back to where it was. */
+/** A pin or beacon was dragged to another place; after a refusal it returns. */
 async function move(picture: Picture, standing: Standing, place: Place): Promise<void> {
   const done = mayAct.peek() ? await attempt(moved(picture, standing, place)) : null;
   if (done === null) picture.pins.value = [...picture.pins.peek()];

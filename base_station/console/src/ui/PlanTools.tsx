@@ -89,8 +89,8 @@ export function ToolPanel({ picture }: { picture: Picture }) {
   return panel;
 }
 
-/** Keys go on in the panel, which stands far behind the button that opened it, and afterwards there.
- * A dialog that led to it gives the focus back first (`Dialogs.tsx`). */
+/** The focus moves to the panel, which is far behind the button that opened it, and returns afterwards. A
+ * dialog that led to it gives the focus back first (`Dialogs.tsx`). */
 function useFocus(now: Tool | null): void {
   useLayoutEffect(() => {
     const panel = document.querySelector<HTMLElement>(".tool-panel");
@@ -113,7 +113,7 @@ function useFocus(now: Tool | null): void {
   }, [now]);
 }
 
-/** Null where there is nothing to do with it. */
+/** Null without an action. */
 function panelOf(now: Tool, picture: Picture): JSX.Element | null {
   if (now.kind === "trails") return <TrailsPanel />;
   if (now.kind === "pins") return <PinList picture={picture} />;

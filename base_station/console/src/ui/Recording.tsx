@@ -6,7 +6,7 @@ import { t } from "../language/translate";
 
 const HOUR_MS = 3_600_000;
 
-/** A unit's black box, pulled over the bus behind everything that is live. */
+/** A unit's black box, pulled over the bus with less priority than live data. */
 export function Recording({ unitId }: { unitId: string }) {
   const picture = live.value?.picture;
   if (picture === undefined) return null;
@@ -34,7 +34,7 @@ export function Recording({ unitId }: { unitId: string }) {
   );
 }
 
-/** All that the station was asked for lately, with how far each is; nothing where it was not. */
+/** Recent transfers with their progress; empty without any. */
 export function Recordings({ pulls }: { pulls: readonly RecordingView[] }) {
   if (pulls.length === 0) return null;
   return (

@@ -10,7 +10,7 @@ interface Props {
   onYes: (next: AnchorView) => void;
 }
 
-/** Whether another place is meant for a plan that has one: people move by it. */
+/** Confirmation of a new georeference for a plan that has one: it moves people. */
 export function ReplacePlace({ shown, next, onYes }: Props) {
   const asked = next.value;
   if (asked === null) return null;

@@ -13,7 +13,7 @@ interface Props {
   done: () => void;
 }
 
-/** Why these alarms are over: one press on the reason resolves them, with the note where one was written. */
+/** Reason of a resolution: one press on it resolves these alarms, with the note if there is one. */
 export function ResolveForm({ alarms, done }: Props) {
   const note = useSignal("");
   const steady = useGuardedPress("reasons");

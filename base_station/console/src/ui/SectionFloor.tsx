@@ -20,7 +20,7 @@ interface FloorProps {
   open: Signal<string | null>; // the mark whose people are listed
 }
 
-/** A floor with the people on it: a part of the list that a drawing of the building is, read aloud. */
+/** A floor with its people: entry of the list that screen readers get in place of the drawing. */
 export function SectionFloor({ floor: one, label, narrow, open }: FloorProps) {
   const people = one.marks.reduce((count, { members }) => count + members.length, 0);
   return (
@@ -60,7 +60,7 @@ export function OpenMark({ floors, open }: OpenProps) {
   return <MarkMembers mark={mark} close={() => (open.value = null)} />;
 }
 
-/** Of whom no height is known; they are in no place of the drawing. */
+/** People without a known height; they are not in the drawing. */
 export function NotLocated({ picture }: { picture: Picture }) {
   void picture.unitsChanged.value;
   const count = picture.allUnits().filter(({ position }) => position === null).length;

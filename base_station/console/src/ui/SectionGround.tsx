@@ -8,7 +8,7 @@ interface Props {
   widthPx: number;
 }
 
-/** What is behind the people: ground, floors, stairs, and how sure each height is. */
+/** Background of the section: ground, floors, stairs, and the uncertainty of each height. */
 export function SectionGround({ section, widthPx }: Props) {
   const { heightPx, groundPx } = section;
   return (
@@ -58,7 +58,7 @@ function steps({ leftPx, rightPx, topPx, bottomPx }: Box): string {
 const CAP_PX = 3;
 const BESIDE_PX = BAR_PX / 2;
 
-/** The height with its error, left of the place; a line leads to who stands aside. */
+/** The height with its error, left of the position; a line leads to a shifted mark. */
 export function Bar({ mark, markPx }: { mark: DrawnMark; markPx: number }) {
   const { xPx, yPx, footXPx, footYPx, barTopPx, barBottomPx, urgency } = mark;
   const isAside = xPx !== footXPx || yPx !== footYPx - Math.round(markPx / 2);

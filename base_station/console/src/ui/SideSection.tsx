@@ -12,7 +12,7 @@ import { Choice } from "./Choice";
 import { NotLocated, OpenMark, SectionFloor } from "./SectionFloor";
 import { SectionView } from "./SectionView";
 
-/** The building from its side: everybody at their height.  Read aloud it is a list of floors. */
+/** Side view of the building with people at their heights.  For screen readers it is a list of floors. */
 export function SideSection({ picture }: { picture: Picture }) {
   const view = useRef<HTMLDivElement>(null);
   const window = useSignal<Window>({ widthPx: 0, heightPx: 0 });
@@ -77,7 +77,7 @@ export function SideSection({ picture }: { picture: Picture }) {
   );
 }
 
-/** Who is chosen or in danger, where the window is too low for all floors. */
+/** The chosen member or one in danger, if the window is too low for all floors. */
 function showInNeed(view: HTMLElement | null): void {
   const marks = [".section-mark.chosen", ".section-mark.immediate", ".shown > .section-floor"];
   const first = marks.map((one) => view?.querySelector(one)).find((one) => one !== null);

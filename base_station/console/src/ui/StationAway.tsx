@@ -7,7 +7,8 @@ import { Icon } from "./Icon";
 
 const TRY_AGAIN_MS = 3_000;
 
-/** The page was opened without its station: it knows nothing, says so, and goes on once the station answers. */
+/** Shown when the page was opened without its station: it reports that, and continues once the station
+ * answers. */
 export function StationAway() {
   const since = useSignal(Date.now());
   const now = useSignal(Date.now());

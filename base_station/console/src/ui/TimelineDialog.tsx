@@ -25,7 +25,7 @@ import { Dialog } from "./Dialog";
 const WITHOUT_INCIDENT_MS = 3_600_000;
 const BUCKETS = 1000; // one a pixel of the widest dialog
 
-/** What one unit measured and stated, over the incident; in a replay with the moment that is shown. */
+/** Measured and reported values of one unit over the incident; in a replay with the shown moment. */
 export function TimelineDialog() {
   const unitId = dialogUnit.value;
   const unit = unitId === null ? undefined : picture.value?.unit(unitId)?.peek();
@@ -116,7 +116,7 @@ function isReplay(): boolean {
   return replay.value !== null;
 }
 
-/** The moment on the screen behind; null: what is live. */
+/** The moment of the replay; null: live. */
 function shownMs(): number | null {
   return picture.value?.replay.value?.at_ms ?? null;
 }
@@ -184,7 +184,7 @@ function Moment({ timeline, lookedAt }: LookProps) {
   );
 }
 
-/** Where the person looks, else what the replay shows, else the end. */
+/** The moment under the pointer, else that of the replay, else the end. */
 function momentOf({ from_ms, until_ms }: Timeline, lookedAt: ReadonlySignal<number | null>): number {
   const atMs = lookedAt.value ?? shownMs() ?? until_ms;
   return Math.min(Math.max(atMs, from_ms), until_ms);

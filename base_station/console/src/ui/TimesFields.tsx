@@ -21,7 +21,7 @@ interface FieldProps {
   valueS: number | undefined;
 }
 
-/** A time that nobody changes is sent as it was, seconds and all. */
+/** An unchanged time is sent as it was, with its seconds. */
 function MinutesField({ name, label, valueS }: FieldProps) {
   return (
     <label class="short">

@@ -10,7 +10,7 @@ interface Props {
   brief: boolean;
 }
 
-/** Units of no open incident: they are on no plan and in no headcount, and not out of sight. */
+/** Units of no open incident: they are on no plan and in no headcount, but are listed. */
 export function Unassigned({ picture, second, brief }: Props) {
   void [second.value, picture.unitsChanged.value];
   const units = picture.unassignedUnits();

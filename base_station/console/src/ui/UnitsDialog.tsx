@@ -126,7 +126,7 @@ function Sensors({ sensors, tracker }: { sensors: readonly WornSensorView[]; tra
   );
 }
 
-/** Its name, and what the station has to say against it. */
+/** Its name, and the station's objections to it. */
 function Calibration({ unit, calibration }: { unit: UnitView; calibration: string }) {
   const alarms = live.value?.picture.alarms.value;
   const warning = unit.alarms
@@ -140,7 +140,7 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
   );
 }
 
-/** What the unit has found wrong at its start, as `muster edge check` would. */
+/** Results of the unit's check at its start, as of `muster edge check`. */
 function CheckAtStart({ preflight }: { preflight: PreflightView | null }) {
   if (preflight === null || preflight.level === "ok") return null;
   const level = preflight.level === "failed" ? "warned" : "quiet";

@@ -5,8 +5,8 @@ import { dialog } from "../uiState";
 import { Icon } from "./Icon";
 import { showUnit } from "./showIncident";
 
-/** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait.  Over a
- * replay they are of what is live, and lead there; of the past there are none. */
+/** In a dialog, which covers the alarms: urgent unacknowledged alarms.  Over a replay they are live ones,
+ * and lead there; past alarms are not shown. */
 export function UrgentNow() {
   const overPast = isPast.value;
   const watched = live.value?.picture;

@@ -1,8 +1,7 @@
 import { unanswered } from "../http";
 import { t } from "../language/translate";
 
-/** In the place of a list that the station has not given yet: an empty one would look as if there were
- * nothing. */
+/** Placeholder of a list that is being loaded: an empty list would look as if there were no entries. */
 export function Waiting() {
   return (
     <p class="quiet" role="status">
@@ -11,7 +10,7 @@ export function Waiting() {
   );
 }
 
-/** That a press was noticed, while the station has not answered it over a slow link. */
+/** Indication of a pending press, while the station has not answered over a slow link. */
 export function Sending() {
   return (
     <span class="sending" role="status">

@@ -11,7 +11,7 @@ import { Icon } from "./Icon";
 import { whatOrWhere } from "./Line";
 import { ParClock } from "./ParClock";
 
-/** For a screen on a wall, read from 2 m: names, state and floor, who needs help first. */
+/** For a screen on a wall, read from 2 m: names, state and floor, members in need of help first. */
 export function Wall({ picture }: { picture: Picture }) {
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
   void [picture.unitsChanged.value, picture.alarms.value, second.value];
@@ -56,13 +56,13 @@ function Row({ place, picture }: { place: Place; picture: Picture }) {
   );
 }
 
-/** Of other incidents whoever needs somebody: this screen has no list of alarms. */
+/** Members of other incidents who need help: this screen has no list of alarms. */
 function inNeedElsewhere(picture: Picture): UnitView[] {
   const others = picture.unitsOfAll().filter(({ unit_id }) => !picture.isShown(unit_id));
   return others.filter((unit) => ["immediate", "soon"].includes(urgencyOf(unit, picture.alarms.value)));
 }
 
-/** What is the matter; of another ground not the place, but the incident. */
+/** The problem; for another site the incident in place of the position. */
 function wordsOf(unit: UnitView, picture: Picture): string {
   if (picture.isShown(unit.unit_id)) return whatOrWhere(unit, picture);
   const name = picture.otherIncidentOf(unit.unit_id)?.name ?? t("wall.unassigned");
@@ -73,7 +73,7 @@ function floorOf({ position }: UnitView): string {
   return position === null || position.floor === null ? "?" : shortFloor(position.floor);
 }
 
-/** Whom the wall has no room for; the most urgent stand above. */
+/** Members without room on the wall; the most urgent ones are above. */
 function moreWords(left: readonly Place[]): string {
   const inNeed = left.filter(({ urgency }) => urgency !== "normal").length;
   const count = left.length;

@@ -6,8 +6,8 @@ import { t } from "../language/translate";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
 
-/** Who wears a unit, to be chosen among the people; they are listed once somebody goes to it, as
- * hundreds of units with hundreds of people each would keep the page busy for a minute. */
+/** Choice of the wearer of a unit; the people are listed when the element gets the focus, as hundreds of
+ * units with hundreds of people each would block the page for a minute. */
 export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.Person[] }) {
   const change = (personId: string) =>
     void attempt(personId === "" ? api.unassign(unit.unit_id) : api.assign(unit.unit_id, personId));
@@ -41,7 +41,7 @@ function nameAndCrew({ name, crew }: Named): string {
   return crew === "" ? name : t("units.with_crew", { name, crew });
 }
 
-/** Whoever is given another unit wears the one before no more: "Ana (Engine 1), wears FF-02". */
+/** A member who gets another unit loses the previous one: "Ana (Engine 1), wears FF-02". */
 function nameAndUnit(named: Named, unitId: string): string {
   const name = nameAndCrew(named);
   const units = live.peek()?.picture.unitsOfAll() ?? [];

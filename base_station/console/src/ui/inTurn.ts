@@ -2,7 +2,7 @@ import { attempt } from "../sessions";
 
 const AT_ONCE = 4;
 
-/** A few at a time: the request after two hundred others would run out of time.  Whether all were
+/** Runs a few at a time, as the last of two hundred requests would time out.  Returns whether all were
  * carried out. */
 export async function inTurn<T>(all: readonly T[], act: (one: T) => Promise<void>): Promise<boolean> {
   const left = [...all];

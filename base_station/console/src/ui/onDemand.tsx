@@ -6,7 +6,7 @@ import { attempt } from "../sessions";
 import { t } from "../language/translate";
 import { Waiting } from "./Waiting";
 
-/** A part of the page that is fetched when it is opened first: what is needed in a hurry loads without it. */
+/** A part of the page that is loaded when first opened, so that the urgent parts load faster. */
 export function onDemand<Props extends object>(
   load: () => Promise<FunctionComponent<Props>>,
 ): FunctionComponent<Props> {

@@ -1,4 +1,4 @@
-/** Keys of urgent actions.  Each opens the dialog of its button, with the same question. */
+/** Keyboard shortcuts of urgent actions.  Each opens the dialog of its button, with the same question. */
 import { useEffect } from "preact/hooks";
 import { shortcutsOn } from "../appearance";
 import type { PlainKey } from "../language/translate";
@@ -35,7 +35,7 @@ export function shortcutOf(press: Press, acts: boolean): Shortcut | undefined {
 
 type Press = Pick<KeyboardEvent, "key" | "repeat" | "ctrlKey" | "metaKey" | "altKey">;
 
-/** They hold from wherever nothing is written and no dialog is open. */
+/** Active while no text field has the focus and no dialog is open. */
 export function useShortcuts(): void {
   useEffect(() => {
     const act = (press: KeyboardEvent) => {

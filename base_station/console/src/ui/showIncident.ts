@@ -3,7 +3,7 @@ import { selectedUnit, find, floor } from "../uiState";
 import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";
 
-/** Nothing goes along that is of the ground before: who was chosen, the floor, a tool on the plan. */
+/** Clears the state of the previous site: the chosen member, the floor, a tool on the plan. */
 export function showIncident(picture: Picture, incidentId: string): void {
   if (picture.incident.peek()?.incident_id === incidentId) return;
   putDown();

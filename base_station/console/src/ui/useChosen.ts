@@ -3,8 +3,8 @@ import { useRef } from "preact/hooks";
 
 type OfList = { currentTarget: HTMLSelectElement };
 
-/** For a list that acts on what is chosen in it.  Arrow keys pass other entries on their way: by keys
- * it counts with Enter, or when the list is left, and Escape leaves it as it was. */
+/** For a select element whose choice has an effect.  Arrow keys pass other entries: by keyboard the
+ * choice takes effect with Enter or when the element loses the focus, and Escape cancels it. */
 export function useChosen(current: string, act: (chosen: string) => void) {
   const passed = useSignal<string | null>(null);
   const byKeys = useRef(false);

@@ -1,13 +1,13 @@
 import { useRef } from "preact/hooks";
 import { MAX_ACT_MS } from "../http";
 
-/** Two presses in haste are one. */
+/** Time in which a second press is ignored. */
 export const GUARD_MS = 500;
 
-/** For a row of a list that others move in: a press in haste on what has only just come to this place
- * was meant for what stood here before.  Keys press what has the focus, which moves along.
- * `place`: where it stands, and what of it must not be another to whoever presses it.
- * `whenNew`: also while it has only just been there at all. */
+/** For a row of a list whose order changes: a quick press on a row that has just moved here was meant for
+ * the previous one.  The focus of the keyboard moves with the row.  `place`: position of the row, and
+ * the content that must not have changed before a press.  `whenNew`: also for a row that has just
+ * appeared. */
 export function useGuardedPress(place: number | string, whenNew = true): (act: () => void) => (press: MouseEvent) => void {
   const here = useRef({ place, sinceMs: whenNew ? performance.now() : -Infinity });
   if (here.current.place !== place) here.current = { place, sinceMs: performance.now() };

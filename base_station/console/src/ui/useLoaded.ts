@@ -2,7 +2,7 @@ import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { attempt, live } from "../sessions";
 
-/** Ask at the beginning, and where there was no answer, once the station is heard again. */
+/** Requests at the start, and after a failure once the station is received again. */
 export function useAsked(ask: () => void, isThere: () => boolean): void {
   const isHeard = live.value?.picture.link.value.kind === "up";
   useEffect(() => {
@@ -10,7 +10,7 @@ export function useAsked(ask: () => void, isThere: () => boolean): void {
   }, [isHeard]);
 }
 
-/** What the station answers, and a way to ask again. */
+/** The answer of the station, and a function that requests it again. */
 export function useLoaded<T>(load: () => Promise<T>): [Signal<T | null>, () => void] {
   const loaded = useSignal<T | null>(null);
   const again = () => {

@@ -15,7 +15,7 @@ function shared(): IntersectionObserver {
   return observer;
 }
 
-/** Let the picture know whether the card of a unit is on the screen: others are brought up to date less often. */
+/** Tells the picture whether the card of a unit is on the screen: hidden cards are updated less often. */
 export function useSeen(card: RefObject<Element | null>, unitId: string, picture: Picture): void {
   useEffect(() => {
     const element = card.current;
