@@ -14,7 +14,11 @@ import msgspec
 
 
 class TextCode(msgspec.Struct, frozen=True):
-    """Code of a text, and its parameters, with their units in their names (``away_s``)."""
+    """Code of a text, and its parameters, with their units in their names (``away_s``).
+
+    Of a parameter ``reason`` that is itself a coded text, ``texts`` has the English text by its
+    name, its code as ``reason:``, and its own parameters as ``reason:away_s``.
+    """
 
     code: str = ""  # empty: the text has none
     texts: dict[str, str] = msgspec.field(default_factory=dict)
@@ -59,6 +63,10 @@ def coded(
             shown[name], numbers[name] = one.words, float(one.value)
         elif isinstance(one, str):
             texts[name] = str(one)
+            if (inner := code_of_text(one)).code:
+                texts[f"{name}:"] = inner.code
+                texts |= {f"{name}:{each}": text for each, text in inner.texts.items()}
+                numbers |= {f"{name}:{each}": number for each, number in inner.numbers.items()}
         else:
             numbers[name] = float(one)
     text = CodedText(template.format(**shown))
@@ -69,6 +77,12 @@ def coded(
 def code_of_text(text: str) -> TextCode:
     """The code of a text; ``NO_CODE`` where it has none."""
     return text.code if isinstance(text, CodedText) else NO_CODE
+
+
+def text_of_error(error: Exception) -> str:
+    """The text of an error, with its code where it was raised with a coded text."""
+    first = error.args[0] if error.args else ""
+    return first if isinstance(first, CodedText) else str(error)
 
 
 def join_texts(texts: Iterable[str]) -> str:

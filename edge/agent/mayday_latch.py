@@ -13,6 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.durable_names import sync_folder
 from shared.own_files import write_own
 from shared.worker import UNTIL_WOKEN, Worker
@@ -28,7 +29,7 @@ class MaydayLatch:
     def __init__(self, path: Path, clock: Clock) -> None:
         self._path = path
         self._clock = clock
-        self._read_fault = ""
+        self._read_fault: str = ""
         self.was_active = self._read()  # when the agent ended
         self._is_on_disk = self.was_active
         self._is_active = self.was_active
@@ -41,7 +42,11 @@ class MaydayLatch:
     def fault(self) -> str:
         """Fault of the disk as a sentence; empty where there is none."""
         if self._worker.fault:
-            return f"the mayday's state would not survive a restart: {self._worker.fault}"
+            return coded(
+                "mayday-not-kept",
+                "the mayday's state would not survive a restart: {error}",
+                error=self._worker.fault,
+            )
         return self._read_fault
 
     def set(self, *, is_active: bool) -> None:
@@ -60,7 +65,11 @@ class MaydayLatch:
         except FileNotFoundError:
             return False
         except OSError as error:  # a unit must start in any case
-            self._read_fault = f"whether a mayday was active cannot be read: {error}"
+            self._read_fault = coded(
+                "mayday-not-read",
+                "whether a mayday was active cannot be read: {error}",
+                error=str(error),
+            )
             return False
 
     def _step(self) -> float:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import msgspec
 
+from shared.coded_text import coded
 from shared.durable_names import sync_folder
 from shared.messages import ANSWERED_BY_PRESS, Command, CommandKind
 from shared.own_files import read_own, write_own
@@ -40,7 +41,7 @@ class OpenCommands:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._read_fault = ""
+        self._read_fault: str = ""
         found = self._read()
         self._on_disk = found  # None: not known; it is written anew
         self._commands = {command.command_id: command for command in found or ()}
@@ -56,7 +57,11 @@ class OpenCommands:
     def fault(self) -> str:
         """Fault of the disk as a sentence; empty where there is none."""
         if self._worker.fault:
-            return f"open commands would not survive a restart: {self._worker.fault}"
+            return coded(
+                "commands-not-kept",
+                "open commands would not survive a restart: {error}",
+                error=self._worker.fault,
+            )
         return self._read_fault
 
     def add(self, command: Command) -> None:
@@ -107,7 +112,11 @@ class OpenCommands:
         except FileNotFoundError:
             return []
         except (OSError, msgspec.MsgspecError) as error:  # a unit must start in any case
-            self._read_fault = f"which commands were open cannot be read: {error}"
+            self._read_fault = coded(
+                "commands-not-read",
+                "which commands were open cannot be read: {error}",
+                error=str(error),
+            )
             return None
 
     def _step(self) -> float:

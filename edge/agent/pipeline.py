@@ -348,7 +348,7 @@ class TrackerPipeline:
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:
-        return UnitEvent(self._stamper.header(mono_ns), kind, detail)
+        return UnitEvent.of(self._stamper.header(mono_ns), kind, detail)
 
 
 def _rate_hz(channel: Channel) -> float:

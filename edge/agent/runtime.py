@@ -25,6 +25,7 @@ from edge.agent.source_reader import SourceReader, TimedBatch
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
+from edge.fault_texts import program_error
 from edge.sample_codec.codec import SampleEncoder, batch_of
 from edge.samples import ACKNOWLEDGE, CANCEL, ButtonPress, SensorBatch
 from edge.sources.interface import Source
@@ -35,6 +36,7 @@ from shared.bus import ReplyHandler
 from shared.channels import COMMAND, clock_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
+from shared.coded_text import coded
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
 from shared.messages import (
@@ -199,8 +201,12 @@ class Agent:
             self._failure = error
             self._send_event(
                 EventKind.SENSOR_FAULT,
-                f"the tracker has failed at its start ({type(error).__name__}: {error}): the "
-                "button works, and the agent is started again half a minute later",
+                coded(
+                    "tracker-failed",
+                    "the tracker has failed at its start ({error}): the button works, and the "
+                    "agent is started again half a minute later",
+                    error=program_error(error),
+                ),
             )
 
     def _step_start_check(self) -> None:
@@ -260,7 +266,14 @@ class Agent:
         silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
         if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_reported:
             self._silence_reported = True
-            self._send_event(EventKind.SENSOR_FAULT, "the source has been silent for 2 s")
+            self._send_event(
+                EventKind.SENSOR_FAULT,
+                coded(
+                    "source-silent",
+                    "the source has been silent for {silent_s:.0f} s",
+                    silent_s=_SILENT_NS / NS_PER_S,
+                ),
+            )
 
     def _is_over(self, after_start_ns: int) -> bool:
         return self._parts.clock.monotonic_ns() - self._started_ns > after_start_ns
@@ -336,4 +349,4 @@ class Agent:
 
     def _send_event(self, kind: EventKind, detail: str) -> None:
         logger.info("%s: %s", kind.name, detail)
-        self._parts.outbox.put((UnitEvent(self._parts.stamper.header(), kind, detail),))
+        self._parts.outbox.put((UnitEvent.of(self._parts.stamper.header(), kind, detail),))

@@ -12,6 +12,7 @@ import numpy as np
 
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
 _LASTING_NS = NS_PER_S
 _TURNING_RADPS = 0.5  # what the gyroscope changes by in a swing, and more
@@ -25,13 +26,17 @@ class SensorHealth:
 
     def __init__(self) -> None:
         self._last_t_ns: int | None = None
-        self._unusable = _Run("no usable inertial sample for 1 s")
-        self._stuck = _Run("the inertial sensor has repeated one value for 1 s")
+        self._unusable = _Run(coded("samples-unusable", "no usable inertial sample for 1 s"))
+        self._stuck = _Run(
+            coded("sensor-stuck", "the inertial sensor has repeated one value for 1 s")
+        )
         self._accel_hangs = _Hang(
-            "the accelerometer has repeated a value while the unit turned", _TURNING_RADPS
+            coded("accel-stuck", "the accelerometer has repeated a value while the unit turned"),
+            _TURNING_RADPS,
         )
         self._gyro_hangs = _Hang(
-            "the gyroscope has repeated a value while the unit moved", _SHAKING_MPS2
+            coded("gyro-stuck", "the gyroscope has repeated a value while the unit moved"),
+            _SHAKING_MPS2,
         )
         self._last_row: tuple[float, ...] | None = None
 
@@ -57,9 +62,21 @@ class SensorHealth:
             return []
         step_ns = t_ns - self._last_t_ns
         if step_ns > _LASTING_NS:
-            return [f"no inertial sample for {step_ns / NS_PER_S:.1f} s"]
+            return [
+                coded(
+                    "samples-missing",
+                    "no inertial sample for {missing_s:.1f} s",
+                    missing_s=step_ns / NS_PER_S,
+                )
+            ]
         if step_ns < -_LASTING_NS:
-            return [f"the samples' clock went back by {-step_ns / NS_PER_S:.1f} s"]
+            return [
+                coded(
+                    "samples-clock-back",
+                    "the samples' clock went back by {back_s:.1f} s",
+                    back_s=-step_ns / NS_PER_S,
+                )
+            ]
         return []
 
 

@@ -14,6 +14,7 @@ from statistics import median
 from edge.clocks.timeline import Timeline
 from edge.samples import SensorBatch
 from shared.clock import NS_PER_S
+from shared.coded_text import Term, coded
 
 GONE_NS = 2 * NS_PER_S  # without a sample, while others give some
 _APART_NS = NS_PER_S  # by which samples that come together differ in time, on one clock
@@ -74,7 +75,7 @@ class SensorPresence:
         sensor.newest_ns, sensor.newest_number = newest_ns, self._batches
         if sensor.is_gone:
             sensor.is_gone = False
-            news.append(f"{batch.sensor} is back")
+            news.append(coded("sensor-back", "{sensor} is back", sensor=batch.sensor))
         news += self._find_gone(newest_ns)
         return batch, timeline, tuple(news)
 
@@ -101,23 +102,34 @@ class SensorPresence:
             return []  # a backlog that is caught up comes nearer with each batch
         sensor.offset_ns += round(median(sensor.apart_ns))
         sensor.apart_ns.clear()
-        others = " and ".join(self._names(besides=sensor))
+        side = "behind" if sensor.offset_ns > 0 else "ahead"
         return [
-            f"the clock of {batch.sensor} is {abs(sensor.offset_ns) / NS_PER_S:.1f} s "
-            f"{'behind' if sensor.offset_ns > 0 else 'ahead'} of {others}: it is laid on theirs by "
-            "when its samples come"
+            coded(
+                "sensor-clock",
+                "the clock of {sensor} is {off_s:.1f} s {side} of {others}: it is laid on theirs "
+                "by when its samples come",
+                sensor=batch.sensor,
+                off_s=abs(sensor.offset_ns) / NS_PER_S,
+                side=Term(side, side),
+                others=" and ".join(self._names(besides=sensor)),
+            )
         ]
 
     def _find_gone(self, now_ns: int) -> list[str]:
         assert self._began_ns is not None
-        news = []
+        news: list[str] = []
         for name, sensor in self._sensors.items():
             newest_ns = self._began_ns if sensor.newest_ns is None else sensor.newest_ns
             if not sensor.is_gone and now_ns - newest_ns > GONE_NS:
                 sensor.is_gone = True
                 news.append(
-                    f"{name} has given no samples for {GONE_NS // NS_PER_S} s; "
-                    f"{' and '.join(self.present)} goes on"
+                    coded(
+                        "sensor-gone",
+                        "{sensor} has given no samples for {silent_s:.0f} s; {present} goes on",
+                        sensor=name,
+                        silent_s=GONE_NS / NS_PER_S,
+                        present=" and ".join(self.present),
+                    )
                 )
         return news
 

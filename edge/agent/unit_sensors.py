@@ -9,6 +9,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.sensor_health import SensorHealth
 from edge.agent.sensor_presence import SensorPresence
 from edge.clocks.timeline import Timeline
+from edge.fault_texts import fault_of
 from edge.samples import ImuBatch, SensorBatch
 from edge.tracker.interface import TrackBatch
 
@@ -69,4 +70,4 @@ class UnitSensors:
     def _faults(self, batch: SensorBatch) -> Iterator[str]:
         if batch.sensor in self._healths:
             for fault in self._healths[batch.sensor].push(batch.imu):
-                yield f"{batch.sensor}: {fault}" if batch.sensor else fault
+                yield fault_of(batch.sensor, fault) if batch.sensor else fault

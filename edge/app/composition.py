@@ -49,6 +49,7 @@ from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
+from shared.coded_text import coded
 from shared.envelope import Stamper
 from shared.messages import EventKind, UnitEvent
 from shared.service_manager import ServiceManager
@@ -115,7 +116,7 @@ def compose_agent(
             has_outputs=bool(outputs.kinds),
         )
         for detail in _quarantine_reports(folder, damaged):
-            outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
+            outbox.put((UnitEvent.of(stamper.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(
             AgentParts(
                 source=source,
@@ -172,11 +173,16 @@ def _timekeepers(source: Source) -> Callable[[], Timekeeper] | None:
 def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterator[str]:
     """Yield reports for a person of what was found in the unit's folder and cannot be used."""
     if damaged is not None:
-        yield f"the journal was damaged and is set aside as {damaged.name}"
+        yield coded(
+            "journal-set-aside",
+            "the journal was damaged and is set aside as {file}",
+            file=damaged.name,
+        )
     if folder.quarantine is not None:
-        yield (
-            "the folder held the journal of another unit, as if copied; it is set aside as "
-            f"{folder.quarantine.name}"
+        yield coded(
+            "journal-of-other-unit",
+            "the folder held the journal of another unit, as if copied; it is set aside as {file}",
+            file=folder.quarantine.name,
         )
 
 

@@ -11,9 +11,11 @@ from collections import deque
 from collections.abc import Sequence
 from threading import Event, Lock
 
+from edge.fault_texts import fault_of
 from edge.notifiers.interface import Notifier
 from edge.notifiers.signals import Notice
 from edge.sources.sysfs import explain_read_error
+from shared.coded_text import coded
 from shared.worker import UNTIL_WOKEN, Worker
 
 _RETRY_S = 1.0
@@ -115,7 +117,8 @@ class NoticePlayer:
     def _report(self, reason: str) -> None:
         if reason != self._reported:
             self._reported = reason
-            self._faults.append(f"output {self._title}: {reason}")
+            output = coded("device-output", "output {name}", name=self._title)
+            self._faults.append(fault_of(output, reason))
 
 
 def _rank(notice: Notice) -> int:

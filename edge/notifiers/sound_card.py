@@ -11,6 +11,7 @@ import shutil
 import subprocess
 from threading import Event
 
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 DEFAULT_DEVICE = "default"
@@ -46,8 +47,13 @@ def play_wave(wave: bytes, interrupt: Event, device: str = DEFAULT_DEVICE) -> No
         complaint = process.stderr.read()
     if process.returncode != 0:
         raise OSError(
-            f"{_PLAYER} plays nothing on {device}: {last_line(complaint)}; `{_PLAYER} -L` lists "
-            "the devices"
+            coded(
+                "output-no-sound",
+                "{player} plays nothing on {device}: {complaint}; `{player} -L` lists the devices",
+                player=_PLAYER,
+                device=device,
+                complaint=last_line(complaint),
+            )
         )
 
 

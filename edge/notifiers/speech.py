@@ -11,6 +11,7 @@ from threading import Event
 
 from edge.notifiers.signals import Notice, sentence
 from edge.notifiers.sound_card import last_line, play_wave, require_programs
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 _SPEAKER = "espeak-ng"
@@ -54,7 +55,7 @@ class SpeechNotifier:
                 check=False,
             )
         except subprocess.TimeoutExpired as error:
-            raise OSError(f"{_SPEAKER} hangs") from error
+            raise OSError(coded("speech-hangs", "{speaker} hangs", speaker=_SPEAKER)) from error
         if made.returncode != 0:
             raise OSError(last_line(made.stderr))
         return made.stdout

@@ -10,6 +10,7 @@ because noise on a line can look like any time.
 from __future__ import annotations
 
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
 _JUMP_NS = NS_PER_S  # more than this ahead of now is another clock
 _BACK_NS = NS_PER_S // 10  # less is a message that was overtaken
@@ -82,13 +83,22 @@ class DeviceClock:
     def _report_jump(self, step_ns: int) -> None:
         self._unconfirmed_ns = None
         if step_ns < 0:
-            far = f"went back by {-step_ns / NS_PER_S:.1f} s"
             self._events.append(
-                f"its clock {far}: it was started anew, or set; time goes on from now"
+                coded(
+                    "device-clock-back",
+                    "its clock went back by {step_s:.1f} s: it was started anew, or set; time goes "
+                    "on from now",
+                    step_s=-step_ns / NS_PER_S,
+                )
             )
         else:
-            far = f"went ahead by {step_ns / NS_PER_S:.1f} s"
-            self._events.append(f"its clock {far}: it was set; time goes on from now")
+            self._events.append(
+                coded(
+                    "device-clock-ahead",
+                    "its clock went ahead by {step_s:.1f} s: it was set; time goes on from now",
+                    step_s=step_ns / NS_PER_S,
+                )
+            )
 
     def _note(self, device_ns: int, arrival_ns: int) -> None:
         """Learn the delay of this message, and follow."""
@@ -104,8 +114,13 @@ class DeviceClock:
         apart_ns = min(self._least_ns, self._least_before_ns) - self._offset_ns
         if apart_ns > _JUMP_NS:
             self._events.append(
-                f"its samples have come {apart_ns / NS_PER_S:.1f} s late for "
-                f"{_WINDOW_NS // NS_PER_S} s: the line is too slow for them, or its clock was set"
+                coded(
+                    "device-samples-late",
+                    "its samples have come {late_s:.1f} s late for {within_s:.0f} s: the line is "
+                    "too slow for them, or its clock was set",
+                    late_s=apart_ns / NS_PER_S,
+                    within_s=_WINDOW_NS / NS_PER_S,
+                )
             )
             self._offset_ns += apart_ns
         else:

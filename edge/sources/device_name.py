@@ -8,6 +8,7 @@ from pathlib import Path
 
 from edge.sources.polled_device import Unreadable
 from edge.sources.sysfs import address_of, devices_in, read_if_there
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 
@@ -44,14 +45,32 @@ def find_device(folder: Path, wanted: DeviceName, what: str) -> Path | Unreadabl
         found = [device for device in found if address_of(device) == wanted.address]
     if not found:
         there = listing(f"{name}@{address_of(device)}" for device, name in named.items() if name)
-        return Unreadable(f"there is no {what} named {wanted}; {there}")
+        return Unreadable(
+            coded(
+                "device-unknown",
+                "there is no {kind} named {name}; {listed}",
+                kind=what,
+                name=str(wanted),
+                listed=there,
+            )
+        )
     if len(found) > 1:
         names = ", ".join(f"{wanted.name}@{address_of(device)}" for device in found)
-        return Unreadable(f"there are {len(found)} named {wanted.name}; write one of {names}")
+        return Unreadable(
+            coded(
+                "devices-several",
+                "there are {count} named {name}; write one of {names}",
+                count=len(found),
+                name=wanted.name,
+                names=names,
+            )
+        )
     return found[0]
 
 
 def listing(names: Iterable[str]) -> str:
     """Return a sentence with what is there."""
     there = ", ".join(names)
-    return f"there are {there}" if there else "there is none at all"
+    if not there:
+        return coded("devices-none", "there is none at all")
+    return coded("devices-there", "there are {there}", there=there)

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 from threading import Event, Thread
 from typing import Generic, TypeVar
 
+from edge.fault_texts import fault_of, program_error
 from edge.sources.sysfs import explain_read_error
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 
 logger = logging.getLogger(__name__)
 
@@ -68,7 +70,13 @@ class PolledDevice(Generic[Sample]):
         silent_ns = self._clock.monotonic_ns() - self._attempted_ns
         if silent_ns > _STALE_NS + self._period_s * NS_PER_S and not self._hangs:
             self._hangs = True
-            self._report_fault(f"no reading for {silent_ns // NS_PER_S} s: it hangs")
+            self._report_fault(
+                coded(
+                    "reading-hangs",
+                    "no reading for {silent_s:.0f} s: it hangs",
+                    silent_s=silent_ns // NS_PER_S,
+                )
+            )
         return tuple(self._faults.popleft() for _ in range(len(self._faults)))
 
     def stop(self) -> None:
@@ -98,12 +106,12 @@ class PolledDevice(Generic[Sample]):
             return Unreadable(explain_read_error(error))
         except Exception as error:  # one device must not end the reading for good
             logger.exception("%s failed", self._title)
-            return Unreadable(f"{type(error).__name__}: {error}")
+            return Unreadable(program_error(error))
 
     def _report_reason(self, reason: str) -> None:
         if reason not in self._reasons:
             self._reasons.add(reason)
-            self._report_fault(f"no reading: {reason}")
+            self._report_fault(coded("no-reading", "no reading: {reason}", reason=reason))
 
     def _report_return(self, now_ns: int) -> None:
         """A loose contact comes and goes: what was reported is over after a while of readings."""
@@ -112,6 +120,6 @@ class PolledDevice(Generic[Sample]):
             self._reasons.clear()
 
     def _report_fault(self, fault: str) -> None:
-        text = f"{self._title}: {fault}"
+        text = fault_of(self._title, fault)
         logger.warning(text)
         self._faults.append(text)

@@ -11,9 +11,11 @@ import math
 from pathlib import Path
 
 from edge.samples import BatterySample
+from edge.sources.device_name import listing
 from edge.sources.polled_device import PolledDevice, Unreadable
 from edge.sources.sysfs import SYSFS, devices_in, number_in, read_if_there
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import ConfigError
 from shared.messages import BatteryState
 
@@ -41,7 +43,9 @@ class BatteryReader:
                 f"/sys/class/power_supply, or {AUTO}"
             )
         battery = _Battery(name, clock, sysfs / "class" / "power_supply")
-        self._device = PolledDevice(f"battery {name}", battery.read, _PERIOD_S, clock)
+        self._device = PolledDevice(
+            coded("device-battery", "battery {name}", name=name), battery.read, _PERIOD_S, clock
+        )
 
     def start(self) -> None:
         self._device.start()
@@ -69,10 +73,10 @@ class _Battery:
         if isinstance(battery, Unreadable):
             return battery
         if read_if_there(battery / "present") == "0":
-            return Unreadable("no battery is inserted")
+            return Unreadable(coded("battery-out", "no battery is inserted"))
         level = _level(battery)
         if not 0.0 <= level <= 1.0:
-            return Unreadable("it shows no charge between 0 and 100 %")
+            return Unreadable(coded("battery-no-charge", "it shows no charge between 0 and 100 %"))
         state = _STATES.get(read_if_there(battery / "status") or "", BatteryState.UNKNOWN)
         left_s = self._left_s(battery) if state is BatteryState.DISCHARGING else math.nan
         if state is not BatteryState.DISCHARGING:
@@ -87,14 +91,30 @@ class _Battery:
             if len(batteries) == 1:
                 return batteries[0]
             return Unreadable(
-                f"there are {len(batteries)} batteries; name one of {there}"
+                coded(
+                    "batteries-several",
+                    "there are {count} batteries; name one of {there}",
+                    count=len(batteries),
+                    there=there,
+                )
                 if batteries
-                else "this machine has no battery that the kernel shows"
+                else coded("battery-none", "this machine has no battery that the kernel shows")
             )
         found = next((one for one in supplies if one.name == self._name), None)
         if found is None or found not in batteries:
-            listed = f"batteries are {there}" if there else "there is none at all"
-            return Unreadable(f"there is no battery named {self._name}; {listed}")
+            listed = (
+                coded("batteries-there", "batteries are {there}", there=there)
+                if there
+                else listing(())
+            )
+            return Unreadable(
+                coded(
+                    "battery-unknown",
+                    "there is no battery named {name}; {listed}",
+                    name=self._name,
+                    listed=listed,
+                )
+            )
         return found
 
     def _left_s(self, battery: Path) -> float:

@@ -15,9 +15,11 @@ from dataclasses import replace
 from queue import Empty, Full, Queue
 from threading import Event, Thread
 
+from edge.fault_texts import fault_of, program_error
 from edge.samples import BatterySample, OtherSample, SensorBatch, SensorDescription
 from edge.sources.interface import Outage, ReportsFaults, Source
 from shared.clock import NS_PER_S
+from shared.coded_text import CodedText, coded
 from shared.errors import ConfigError, MusterError, RecordingError
 
 logger = logging.getLogger(__name__)
@@ -67,12 +69,12 @@ class SensorGroup:
             raise RecordingError(self._last_failure)
 
     def take_faults(self) -> tuple[str, ...]:
-        faults = []
+        faults: list[str] = []
         while self._faults:
             faults.append(self._faults.popleft())
         for name, source in self._members.items():
             if isinstance(source, ReportsFaults):
-                faults += [f"{name}: {fault}" for fault in source.take_faults()]
+                faults += [fault_of(name, fault) for fault in source.take_faults()]
         return tuple(faults)
 
     def close(self) -> None:
@@ -87,17 +89,18 @@ class SensorGroup:
                 others = tuple(_named(other, name) for other in batch.others)
                 yield replace(batch, others=others, sensor=name)
         except MusterError as error:
-            self._note_end(name, f"it has failed: {error}")
+            self._note_end(name, _failed(str(error)))
         except Exception as error:  # a driver may fail in any way; the others go on
             logger.exception("the source of %s failed", name)
-            self._note_end(name, f"it has failed: {type(error).__name__}: {error}")
+            self._note_end(name, _failed(program_error(error)))
         else:
             self._note_end(name, None)
 
     def _note_end(self, name: str, failure: str | None) -> None:
         self._last_failure = None if failure is None else f"{name}: {failure}"
         if not self._closed.is_set():
-            self._faults.append(f"{name}: {failure or 'its source has no more'}")
+            ended = coded("source-ended", "its source has no more")
+            self._faults.append(fault_of(name, failure or ended))
 
     def _merged_batches(self) -> Iterator[SensorBatch]:
         streams = [
@@ -177,6 +180,10 @@ class _Stream:
 
     def __lt__(self, other: _Stream) -> bool:
         return (self.due_ns, self._order) < (other.due_ns, other._order)
+
+
+def _failed(error: str) -> CodedText:
+    return coded("source-failed", "it has failed: {error}", error=error)
 
 
 def _named(sample: OtherSample, name: str) -> OtherSample:

@@ -6,21 +6,32 @@ import errno
 import os
 from pathlib import Path
 
+from shared.coded_text import CodedText, coded, text_of_error
+
 SYSFS = Path("/sys")
 UDEV_RULES = "deploy/udev/60-muster.rules"
 
+_REMOVED = coded("device-removed", "it was removed")
 _EXPLANATIONS = {
-    errno.ENOENT: "it was removed",
-    errno.ENODEV: "it was removed",
-    errno.ENXIO: "it was removed",
-    errno.EIO: "it does not answer (input/output error); check its wires and its supply",
-    errno.EREMOTEIO: "it does not answer on its bus; check its wires and its supply",
-    errno.ETIMEDOUT: "it does not answer in time; check its wires and its supply",
-    errno.EBUSY: "another program uses it; end that one",
-    errno.EAGAIN: "it has no value yet",
-    errno.EROFS: (
+    errno.ENOENT: _REMOVED,
+    errno.ENODEV: _REMOVED,
+    errno.ENXIO: _REMOVED,
+    errno.EIO: coded(
+        "device-io-error",
+        "it does not answer (input/output error); check its wires and its supply",
+    ),
+    errno.EREMOTEIO: coded(
+        "device-bus-silent", "it does not answer on its bus; check its wires and its supply"
+    ),
+    errno.ETIMEDOUT: coded(
+        "device-timeout", "it does not answer in time; check its wires and its supply"
+    ),
+    errno.EBUSY: coded("device-busy", "another program uses it; end that one"),
+    errno.EAGAIN: coded("device-no-value", "it has no value yet"),
+    errno.EROFS: coded(
+        "device-read-only",
         "it cannot be set, because the service sees it read-only; add the line ReadWritePaths that "
-        "stands in muster-unit.service"
+        "stands in muster-unit.service",
     ),
 }
 
@@ -28,11 +39,14 @@ _EXPLANATIONS = {
 def explain_read_error(error: OSError) -> str:
     """Return what a person can do about a device that cannot be opened or read."""
     if error.errno in (errno.EACCES, errno.EPERM):
-        return (
-            f"this program may not open {error.filename}; install {UDEV_RULES} in "
-            "/etc/udev/rules.d and add the user to the group muster"
+        return coded(
+            "device-not-permitted",
+            "this program may not open {path}; install {rules} in /etc/udev/rules.d and add the "
+            "user to the group muster",
+            path=str(error.filename),
+            rules=UDEV_RULES,
         )
-    return _EXPLANATIONS.get(error.errno or 0, str(error))
+    return _EXPLANATIONS.get(error.errno or 0) or text_of_error(error)
 
 
 def read_text(path: Path) -> str:
@@ -62,6 +76,16 @@ def read_if_there(path: Path) -> str | None:
 def read_number(path: Path) -> float | None:
     """Return a numeric attribute; None where its text is no number.  Raises OSError."""
     return number_in(read_text(path))
+
+
+def no_number(attribute: str, text: str) -> CodedText:
+    """Reason that an attribute cannot be used."""
+    return coded(
+        "attribute-no-number",
+        "{attribute} is {text!r}, which is no number",
+        attribute=attribute,
+        text=text,
+    )
 
 
 def number_in(text: str) -> float | None:

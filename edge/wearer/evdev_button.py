@@ -20,8 +20,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from edge.sources.device_name import listing
 from edge.wearer.interface import ButtonError, ContactChange
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 logger = logging.getLogger(__name__)
@@ -29,14 +31,6 @@ logger = logging.getLogger(__name__)
 _FOLDER = Path("/dev/input")
 _SET_CLOCK = 0x400445A0  # EVIOCSCLOCKID: of the times that events have
 _LISTED_MAX = 8
-_NOT_INSTALLED = (
-    "the library evdev is not installed: pip install -r deploy/requirements-button.lock, which "
-    "compiles it (Debian: apt-get install gcc python3-dev linux-libc-dev)"
-)
-_NOT_ALLOWED = (
-    "this program may not open {}; install deploy/udev/60-muster.rules in /etc/udev/rules.d, or "
-    "add the user to the group input"
-)
 
 
 class EvdevButton:
@@ -130,15 +124,25 @@ class EvdevButton:
             named = [device for device in there if device.name == self._place]
             if not named:
                 raise ButtonError(
-                    f"there is no input device named {self._place}; "
-                    f"{_listing(device.name for device in there)}"
+                    coded(
+                        "button-unknown",
+                        "there is no input device named {name}; {listed}",
+                        name=self._place,
+                        listed=_listing(device.name for device in there),
+                    )
                 )
             having = [device for device in named if wanted is None or wanted in _keys(device)]
             if len(having) > 1:
                 paths = ", ".join(str(device.path) for device in having)
                 raise ButtonError(
-                    f"there are {len(having)} input devices named {self._place} ({paths}); write "
-                    "the path of one, from /dev/input/by-id or by-path"
+                    coded(
+                        "buttons-several",
+                        "there are {count} input devices named {name} ({paths}); write the path of "
+                        "one, from /dev/input/by-id or by-path",
+                        count=len(having),
+                        name=self._place,
+                        paths=paths,
+                    )
                 )
             found = (having or named)[0]
             code = self._code_on(library, found, wanted)
@@ -154,9 +158,25 @@ class EvdevButton:
             return wanted
         there = _listing(_key_name(library, code) for code in keys)
         if wanted is not None:
-            raise ButtonError(f"{device.name} has no key {self._key}; {there}")
+            raise ButtonError(
+                coded(
+                    "button-no-key",
+                    "{device} has no key {key}; {listed}",
+                    device=str(device.name),
+                    key=str(self._key),
+                    listed=there,
+                )
+            )
         if len(keys) != 1:
-            raise ButtonError(f"{device.name} has {len(keys)} keys; name one by ?key=; {there}")
+            raise ButtonError(
+                coded(
+                    "button-several-keys",
+                    "{device} has {count} keys; name one by ?key=; {listed}",
+                    device=str(device.name),
+                    count=len(keys),
+                    listed=there,
+                )
+            )
         return keys[0]
 
 
@@ -164,13 +184,27 @@ def _library() -> ModuleType:
     try:
         return import_module("evdev")
     except ImportError as error:
-        raise ButtonError(f"{_NOT_INSTALLED} ({error})") from error
+        raise ButtonError(
+            coded(
+                "button-not-installed",
+                "the library evdev is not installed: pip install -r "
+                "deploy/requirements-button.lock, which compiles it (Debian: apt-get install gcc "
+                "python3-dev linux-libc-dev) ({error})",
+                error=str(error),
+            )
+        ) from error
 
 
 def _code_of(library: ModuleType, key: str) -> int:
     code = library.ecodes.ecodes.get(key)
     if code is None:
-        raise ButtonError(f"there is no key {key}; evtest shows what a button's is called")
+        raise ButtonError(
+            coded(
+                "button-key-unknown",
+                "there is no key {key}; evtest shows what a button's is called",
+                key=key,
+            )
+        )
     return int(code)
 
 
@@ -178,15 +212,28 @@ def _opened(library: ModuleType, path: str) -> Any:
     """Return the device at a path.  Raises ButtonError, OSError."""
     if not Path(path).exists():
         raise ButtonError(
-            f"there is no {path}: it is not connected, asleep or has another number now"
+            coded(
+                "button-gone",
+                "there is no {path}: it is not connected, asleep or has another number now",
+                path=path,
+            )
         )
     try:
         return library.InputDevice(path, readonly=True)
     except PermissionError as error:
-        raise ButtonError(_NOT_ALLOWED.format(path)) from error
+        raise ButtonError(
+            coded(
+                "button-not-permitted",
+                "this program may not open {path}; install deploy/udev/60-muster.rules in "
+                "/etc/udev/rules.d, or add the user to the group input",
+                path=path,
+            )
+        ) from error
     except OSError as error:
         if error.errno in (errno.ENOTTY, errno.EINVAL):
-            raise ButtonError(f"{path} is no input device") from error
+            raise ButtonError(
+                coded("button-no-input", "{path} is no input device", path=path)
+            ) from error
         raise
 
 
@@ -223,9 +270,15 @@ def _key_name(library: ModuleType, code: int) -> str:
 def _listing(names: Iterable[str]) -> str:
     there = list(dict.fromkeys(names))
     if not there:
-        return "there is none at all"
-    more = f" and {len(there) - _LISTED_MAX} more" if len(there) > _LISTED_MAX else ""
-    return f"there are {', '.join(there[:_LISTED_MAX])}{more}"
+        return listing(())
+    if len(there) <= _LISTED_MAX:
+        return listing(there)
+    return coded(
+        "devices-more",
+        "there are {there} and {more} more",
+        there=", ".join(there[:_LISTED_MAX]),
+        more=len(there) - _LISTED_MAX,
+    )
 
 
 def _set_monotonic(device: Any) -> bool:
@@ -245,5 +298,7 @@ def _grab(device: Any) -> None:
         device.grab()
     except OSError as error:
         if error.errno == errno.EBUSY:
-            raise ButtonError("another program has it for itself; end that one") from error
+            raise ButtonError(
+                coded("button-taken", "another program has it for itself; end that one")
+            ) from error
         logger.warning("button: %s may be read by others, too: %s", device.path, error)

@@ -10,11 +10,13 @@ import logging
 import time
 from collections import deque
 
+from edge.fault_texts import fault_of, program_error
 from edge.samples import ButtonPress
 from edge.sources.sysfs import explain_read_error
 from edge.wearer.gestures import HOLD_NS, STUCK_NS, ButtonStuck, Gesture, GestureRecognizer
 from edge.wearer.interface import ButtonDriver, ButtonError
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded, text_of_error
 from shared.worker import Worker
 
 logger = logging.getLogger(__name__)
@@ -76,11 +78,11 @@ class ButtonReader:
         try:
             return self._read() if self._is_open else self._open()
         except ButtonError as error:
-            reason = str(error)
+            reason = text_of_error(error)
         except OSError as error:
             reason = explain_read_error(error)
         except Exception as error:  # a driver may fail in any way; it is opened again
-            reason = f"{type(error).__name__}: {error}"
+            reason = program_error(error)
             if reason not in self._reasons:
                 logger.exception("%s failed", self._title)
         self._driver.close()
@@ -113,8 +115,12 @@ class ButtonReader:
         for found in gestures:
             if isinstance(found, ButtonStuck):
                 self._add_fault(
-                    f"pressed for {STUCK_NS // NS_PER_S} s: it is stuck, or something lies on it; "
-                    "until it is released no gesture can be made with it"
+                    coded(
+                        "button-stuck",
+                        "pressed for {pressed_s:.0f} s: it is stuck, or something lies on it; "
+                        "until it is released no gesture can be made with it",
+                        pressed_s=STUCK_NS / NS_PER_S,
+                    )
                 )
             else:
                 logger.info("%s: %s", self._title, found.button)
@@ -123,9 +129,9 @@ class ButtonReader:
     def _report(self, reason: str) -> None:
         if reason not in self._reasons:
             self._reasons.add(reason)
-            self._add_fault(f"cannot be read: {reason}")
+            self._add_fault(coded("button-unreadable", "cannot be read: {reason}", reason=reason))
 
     def _add_fault(self, fault: str) -> None:
-        text = f"{self._title}: {fault}"
+        text = fault_of(self._title, fault)
         logger.warning(text)
         self._faults.append(text)

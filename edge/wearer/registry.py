@@ -11,6 +11,7 @@ from edge.wearer.interface import ButtonKind
 from edge.wearer.reader import ButtonReader
 from edge.wearer.socket_button import SocketButton
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import ConfigError
 from shared.options import number_within
 
@@ -32,7 +33,9 @@ def open_button(text: str, clock: Clock) -> ButtonReader:
     for kind in BUTTONS:
         if colon and argument and kind.scheme == scheme:
             driver = kind.make(argument, options, clock)
-            return ButtonReader(f"button {text}", driver, clock, hold_ns)
+            return ButtonReader(
+                coded("device-button", "button {name}", name=text), driver, clock, hold_ns
+            )
     choices = ", ".join(f"{kind.scheme}:{kind.argument}" for kind in BUTTONS)
     schemes = [kind.scheme for kind in BUTTONS]
     near = get_close_matches(scheme, schemes, n=1)

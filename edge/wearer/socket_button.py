@@ -14,6 +14,7 @@ from pathlib import Path
 
 from edge.wearer.interface import ButtonError, ContactChange
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 _STATES = {b"down": True, b"up": False}
@@ -46,16 +47,30 @@ class SocketButton:
             connection.connect(str(self._path))
         except FileNotFoundError as error:
             raise ButtonError(
-                f"there is no socket {self._path}; start the program that has the button"
+                coded(
+                    "button-no-socket",
+                    "there is no socket {path}; start the program that has the button",
+                    path=str(self._path),
+                )
             ) from error
         except (ConnectionRefusedError, BlockingIOError) as error:
             raise ButtonError(
-                f"nothing listens at {self._path}; start the program that has the button"
+                coded(
+                    "button-no-listener",
+                    "nothing listens at {path}; start the program that has the button",
+                    path=str(self._path),
+                )
             ) from error
         self.wait(_FIRST_WAIT_S)
         self._receive()
         if not self._changes:
-            raise ButtonError(f"the program at {self._path} does not tell the button's state")
+            raise ButtonError(
+                coded(
+                    "button-no-state",
+                    "the program at {path} does not tell the button's state",
+                    path=str(self._path),
+                )
+            )
 
     def wait(self, timeout_s: float) -> None:
         if self._connection is not None and not self._changes:
@@ -78,13 +93,25 @@ class SocketButton:
         except BlockingIOError:
             return
         if not received:
-            raise ButtonError(f"the program at {self._path} has ended")
+            raise ButtonError(
+                coded("button-ended", "the program at {path} has ended", path=str(self._path))
+            )
         *lines, self._partial = (self._partial + received).split(b"\n")
         if len(self._partial) > _LINE_MAX:
-            raise ButtonError(f"the program at {self._path} sends no lines")
+            raise ButtonError(
+                coded(
+                    "button-no-lines", "the program at {path} sends no lines", path=str(self._path)
+                )
+            )
         now_ns = self._clock.monotonic_ns()
         for line in lines:
             is_pressed = _STATES.get(line.strip())
             if is_pressed is None:
-                raise ButtonError(f"the program at {self._path} sends neither down nor up")
+                raise ButtonError(
+                    coded(
+                        "button-no-words",
+                        "the program at {path} sends neither down nor up",
+                        path=str(self._path),
+                    )
+                )
             self._changes.append(ContactChange(now_ns, is_pressed))

@@ -6,10 +6,12 @@ from enum import IntEnum
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode, code_of_text
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import event_pb2
 from shared.messages.quantise import signed32, unsigned_known
+from shared.messages.text_code import get_text_code, put_text_code
 
 FAILED = "failed"  # the detail of a stop that nobody wanted
 
@@ -30,7 +32,13 @@ class EventKind(IntEnum):
 class UnitEvent(msgspec.Struct, frozen=True):
     header: Header
     kind: EventKind
-    detail: str = ""
+    detail: str = ""  # for a person
+    text_code: TextCode = NO_CODE  # of ``detail``, where it has one
+
+    @staticmethod
+    def of(header: Header, kind: EventKind, detail: str) -> UnitEvent:
+        """With the code of the detail, where it has one."""
+        return UnitEvent(header, kind, str(detail), code_of_text(detail))
 
     @property
     def is_stop_in_order(self) -> bool:
@@ -38,11 +46,14 @@ class UnitEvent(msgspec.Struct, frozen=True):
         return self.kind is EventKind.STOPPED and self.detail != FAILED
 
     def to_wire(self) -> event_pb2.UnitEvent:
-        return event_pb2.UnitEvent(
+        wire = event_pb2.UnitEvent(
             header=self.header.to_wire(),
             kind=int(self.kind),  # type: ignore[arg-type]  # stubs want the generated enum
             detail=self.detail,
         )
+        if self.text_code.code:
+            put_text_code(wire.text_code, self.text_code)
+        return wire
 
     @staticmethod
     def from_wire(wire: event_pb2.UnitEvent) -> UnitEvent:
@@ -50,6 +61,7 @@ class UnitEvent(msgspec.Struct, frozen=True):
             header=Header.from_wire(wire.header),
             kind=known(EventKind, wire.kind),
             detail=wire.detail,
+            text_code=get_text_code(wire.text_code),
         )
 
 

@@ -1,5 +1,5 @@
-"""Every text that the station composes with ``coded`` has its message in all catalogues of the
-console, with the same parameters.  The codes are read from the source.
+"""Every text that the station or a unit composes with ``coded`` has its message in all catalogues
+of the console, with the same parameters.  The codes are read from the source.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import pytest
 from tests.conftest import PROJECT_ROOT
 
 LANGUAGES = ("en", "de", "fr")
+PARTS = ("problems", "unit_faults")
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
 _MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 _BRACE = re.compile(r"\{(\w*)|\}")
@@ -31,7 +32,7 @@ class Composed(NamedTuple):
 
 
 def calls_of_coded() -> Iterator[Composed]:
-    for package in ("base_station", "shared"):
+    for package in ("base_station", "edge", "shared"):
         for path in sorted((PROJECT_ROOT / package).rglob("*.py")):
             if "coded(" in (source := path.read_text()):
                 yield from _calls(path, ast.parse(source))
@@ -55,7 +56,13 @@ COMPOSED = tuple(calls_of_coded())
 
 
 def messages_of(language: str) -> dict[str, str]:
-    return dict(_MESSAGE.findall((_CATALOGUES / language / "problems.ts").read_text()))
+    found = [
+        message
+        for part in PARTS
+        for message in _MESSAGE.findall((_CATALOGUES / language / f"{part}.ts").read_text())
+    ]
+    assert len(dict(found)) == len(found)  # the console finds a code in one of them
+    return dict(found)
 
 
 def placeholders_of(message: str) -> set[str]:

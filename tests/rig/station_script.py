@@ -117,7 +117,7 @@ class Script:
         return self.say(Temperature(self.header(unit_id), ambient_degc))
 
     def event(self, unit_id: str, kind: EventKind, detail: str = "") -> list[Output]:
-        return self.say(UnitEvent(self.header(unit_id), kind, detail))
+        return self.say(UnitEvent.of(self.header(unit_id), kind, detail))
 
     def command(self, unit_id: str, command_id: str) -> list[Output]:
         """The station hears itself say it."""

@@ -15,15 +15,15 @@ afterEach(() => show("en"));
 describe("a text of the station", () => {
   test("is composed in the chosen language from code and parameters", async () => {
     await show("de");
-    expect(codedText("problem", FULL, ENGLISH)).toMatch(/^die Aufzeichnung kann nicht nach \/var\/log .*2,5/);
+    expect(codedText(FULL, ENGLISH)).toMatch(/^die Aufzeichnung kann nicht nach \/var\/log .*2,5/);
     await show("fr");
-    expect(codedText("problem", FULL, ENGLISH)).toMatch(/^le journal ne peut pas être écrit dans \/var\/log/);
+    expect(codedText(FULL, ENGLISH)).toMatch(/^le journal ne peut pas être écrit dans \/var\/log/);
   });
 
   test("without a code, or with one of another version, stays as the station wrote it", async () => {
     await show("de");
-    expect(codedText("problem", undefined, ENGLISH)).toBe(ENGLISH);
-    expect(codedText("problem", { code: "of-a-later-version", texts: {}, numbers: {} }, ENGLISH)).toBe(ENGLISH);
+    expect(codedText(undefined, ENGLISH)).toBe(ENGLISH);
+    expect(codedText({ code: "of-a-later-version", texts: {}, numbers: {} }, ENGLISH)).toBe(ENGLISH);
     expect(problemTexts({ problems: [ENGLISH] })).toEqual([ENGLISH]);
   });
 
@@ -34,8 +34,33 @@ describe("a text of the station", () => {
       numbers: { days: 1 },
     };
     await show("de");
-    expect(codedText("problem", ending, "")).toBe(
+    expect(codedText(ending, "")).toBe(
       "Das Zertifikat des Geräts unit-3 läuft in 1 Tag ab: muster pki renew unit-3",
     );
+  });
+
+  test("has texts within it in the chosen language, too", async () => {
+    const fault = {
+      code: "fault-of",
+      texts: {
+        subject: "battery BAT0",
+        "subject:": "device-battery",
+        "subject:name": "BAT0",
+        fault: "no reading: it was removed",
+        "fault:": "no-reading",
+        "fault:reason": "it was removed",
+        "fault:reason:": "device-removed",
+      },
+      numbers: {},
+    };
+    await show("de");
+    expect(codedText(fault, "battery BAT0: no reading: it was removed")).toBe(
+      "Akku BAT0: kein Messwert: es wurde entfernt",
+    );
+  });
+
+  test("of a foreign unit with a code of ours and other parameters stays as the unit wrote it", async () => {
+    await show("de");
+    expect(codedText({ code: "no-reading", texts: {}, numbers: {} }, "kaputt")).toBe("kaputt");
   });
 });

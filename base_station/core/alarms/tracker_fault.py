@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec.structs import replace
+
 from base_station.core.alarms.interface import WARNING, Finding, Verdict
 from base_station.core.person_references import without_numbers
 from base_station.core.state import UnitState
-from shared.messages import AlarmParameters, Message
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class TrackerFault:
             "fault",
             WARNING,
             "agent-fault",
-            AlarmParameters(member=unit.name, unit_id=agent.unit_id, fault=fault.text),
+            replace(fault.parameters, member=unit.name, unit_id=agent.unit_id),
             seen_ns=fault.t_ns,
             onset_ns=fault.t_ns,
             latched=True,

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec.structs import replace
+
 from base_station.core.alarms.interface import WARNING, Finding, Verdict
 from base_station.core.person_references import without_numbers
 from base_station.core.state import UnitState
-from shared.messages import AlarmParameters, Message
+from shared.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,7 @@ class UnitFault:
             "fault",
             WARNING,
             "unit-fault",
-            AlarmParameters(member=unit.name, fault=unit.fault.text),
+            replace(unit.fault.parameters, member=unit.name),
             seen_ns=unit.fault.t_ns,
             onset_ns=unit.fault.t_ns,
             latched=True,

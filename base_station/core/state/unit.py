@@ -16,7 +16,9 @@ from base_station.core.state.unit_trails import UnitTrails
 from base_station.core.state.unit_wearer import FormerWearer, UnitWearer
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
+from shared.coded_text import NO_CODE, TextCode
 from shared.messages import (
+    AlarmParameters,
     BodyPosture,
     Heartbeat,
     Mobility,
@@ -31,6 +33,17 @@ STILL_NS = 300 * NS_PER_S  # a wearer at rest is published at least this often
 class Fault(msgspec.Struct, frozen=True):
     t_ns: int
     text: str
+    code: TextCode = NO_CODE  # of the text; none of an earlier version, or a foreign unit
+
+    @property
+    def parameters(self) -> AlarmParameters:
+        """Of the sentence of an alarm about it."""
+        return AlarmParameters(
+            fault=self.text,
+            fault_code=self.code.code or None,
+            fault_texts=self.code.texts,
+            fault_numbers=self.code.numbers,
+        )
 
 
 class GpsUse(msgspec.Struct, frozen=True):

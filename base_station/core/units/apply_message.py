@@ -117,7 +117,8 @@ def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
 def apply_fault(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     """Record a fault that the unit reports; other events are ignored."""
     if event.kind in _FAULTS:
-        unit.fault = Fault(t_ns, event.detail or event.kind.name.lower().replace("_", " "))
+        text = event.detail or event.kind.name.lower().replace("_", " ")
+        unit.fault = Fault(t_ns, text, event.text_code)
 
 
 def _event_time_ns(unit: UnitState, header: Header, t_ns: int) -> int | None:

@@ -12,6 +12,7 @@ from edge.sources.gnss.nmea import LATENCY
 from edge.sources.transport.address import TransportAddress, parse_options, parse_server
 from edge.sources.transport.connection import Connection, TcpConnection
 from shared.clock import NS_PER_S
+from shared.coded_text import CodedText, coded
 from shared.errors import ConfigError
 
 logger = logging.getLogger(__name__)
@@ -63,12 +64,19 @@ class Gpsd:
             )
         self.place = TransportAddress(host, port, "", 0)
         self.longest = _LONGEST
-        self.hint = "is this the port of gpsd (2947)?"
+        self.hint = coded("gps-hint-gpsd", "is this the port of gpsd (2947)?")
         self._session = _Session(self._device or None)
 
     def __str__(self) -> str:
-        return f"GPS receiver{f' {self._device}' if self._device else ''} of gpsd at " + (
-            f"{self.place.host}:{self.place.port}"
+        return str(self.title)
+
+    @property
+    def title(self) -> CodedText:
+        return coded(
+            "device-gps-of-gpsd",
+            "GPS receiver{of_device} of gpsd at {place}",
+            of_device=f" {self._device}" if self._device else "",
+            place=f"{self.place.host}:{self.place.port}",
         )
 
     def open(self) -> Connection:
@@ -107,11 +115,22 @@ class Gpsd:
         if not self._session.is_gpsd:
             return ""
         if not self._session.present:
-            return "gpsd has no receiver; is it plugged in, and named in /etc/default/gpsd?"
+            return coded(
+                "gpsd-no-receiver",
+                "gpsd has no receiver; is it plugged in, and named in /etc/default/gpsd?",
+            )
         if self._device and self._device not in self._session.present:
             present = ", ".join(sorted(self._session.present))
-            return f"gpsd has no receiver {self._device}, it has {present}; name one of these"
-        return "gpsd receives nothing from its receiver; is the receiver on, and the cable in?"
+            return coded(
+                "gpsd-other-receiver",
+                "gpsd has no receiver {device}, it has {present}; name one of these",
+                device=self._device,
+                present=present,
+            )
+        return coded(
+            "gpsd-silent",
+            "gpsd receives nothing from its receiver; is the receiver on, and the cable in?",
+        )
 
     def _note(self, device: Device) -> None:
         if device.activated == 0:

@@ -42,8 +42,13 @@ class Dialect(Protocol):
         """Hint of what to check where its lines cannot be understood."""
         ...
 
+    @property
+    def title(self) -> str:
+        """Name of the receiver, for a person."""
+        ...
+
     def __str__(self) -> str:
-        """Return the name of the receiver, for a person."""
+        """Return the same, for a log."""
         ...
 
     def open(self) -> Connection:

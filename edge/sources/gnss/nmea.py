@@ -7,6 +7,7 @@ from edge.sources.gnss.nmea_epochs import Epochs
 from edge.sources.gnss.nmea_sentences import LONGEST, sentence_of
 from edge.sources.transport.address import BAUD, TransportAddress, parse_address, parse_options
 from edge.sources.transport.connection import Connection
+from shared.coded_text import CodedText, coded
 
 _BAUD = 9600
 _LATENCY_S = 0.1  # receivers for people compute for 0.05 to 0.2 s
@@ -26,11 +27,18 @@ class Nmea:
         self.place: TransportAddress = parse_address("nmea", text, values, port=None, baud=_BAUD)
         self.latency_s = values.get("latency", _LATENCY_S)
         self.longest = LONGEST
-        self.hint = "is the cable good, this the right device, and on a serial line ?baud= right?"
+        self.hint = coded(
+            "gps-hint-line",
+            "is the cable good, this the right device, and on a serial line ?baud= right?",
+        )
         self._forget()
 
     def __str__(self) -> str:
-        return f"GPS receiver at {self.place}"
+        return str(self.title)
+
+    @property
+    def title(self) -> CodedText:
+        return coded("device-gps", "GPS receiver at {place}", place=str(self.place))
 
     def open(self) -> Connection:
         line = self.place.open()
@@ -52,14 +60,17 @@ class Nmea:
         if self._kinds & {"GGA", "GNS", "RMC"}:
             return ""
         if self._kinds:
-            return (
-                f"it sends {', '.join(sorted(self._kinds))} and no GGA, GNS or RMC sentences; "
-                "switch GGA and RMC on in its settings"
+            return coded(
+                "gps-no-places",
+                "it sends {kinds} and no GGA, GNS or RMC sentences; switch GGA and RMC on in its "
+                "settings",
+                kinds=", ".join(sorted(self._kinds)),
             )
         if self._is_binary:
-            return (
+            return coded(
+                "gps-binary",
                 "it sends u-blox's binary messages and no NMEA; switch NMEA on in its settings, or "
-                "let gpsd read it"
+                "let gpsd read it",
             )
         return ""
 

@@ -11,6 +11,7 @@ import logging
 from collections import deque
 from dataclasses import replace
 
+from edge.fault_texts import fault_of
 from edge.samples import GpsSample
 from edge.sources.gnss.fix_clock import FixClock
 from edge.sources.gnss.interface import Dialect, Report
@@ -18,6 +19,7 @@ from edge.sources.transport.address import explain_os_error
 from edge.sources.transport.connection import Connection
 from edge.sources.transport.line_reader import LineReader
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
@@ -108,7 +110,9 @@ class GnssReader:
         elif error is not None:
             self._report_silence(explain_os_error(error, self._dialect.place))
         elif self._dialect.place.host:
-            self._report_silence("it has ended the connection; is its program running?")
+            self._report_silence(
+                coded("gps-ended", "it has ended the connection; is its program running?")
+            )
         else:
             self._report_silence(
                 explain_os_error(OSError(errno.EIO, "the line has ended"), self._dialect.place)
@@ -135,12 +139,22 @@ class GnssReader:
         if reason:
             return reason
         if self._repeats:
-            return "it says the same instant again and again: it hangs; switch it off and on"
+            return coded(
+                "gps-hangs",
+                "it says the same instant again and again: it hangs; switch it off and on",
+            )
         if self._garbled > self._understood:
-            return f"what comes is no receiver's: {self._first_garbled}; {self._dialect.hint}"
+            return coded(
+                "gps-no-receiver",
+                "what comes is no receiver's: {garbled}; {hint}",
+                garbled=self._first_garbled,
+                hint=self._dialect.hint,
+            )
         if self._has_reported:
-            return "it has fallen silent; is it on, and the cable in?"
-        return "the line is open and nothing comes; is it on, and the cable in?"
+            return coded("gps-silent", "it has fallen silent; is it on, and the cable in?")
+        return coded(
+            "gps-nothing", "the line is open and nothing comes; is it on, and the cable in?"
+        )
 
     def _check_loss(self, now_ns: int) -> None:
         """Report a line that loses data while the rest goes on: once while it lasts, until ten
@@ -152,8 +166,16 @@ class GnssReader:
         elif self._garbled > max(_FEW, _MANY * received) and not self._loss_reported:
             self._loss_reported = True
             self._report_fault(
-                f"{self._garbled} of {received} lines in {_CHECK_NS // NS_PER_S} s could not be "
-                f"read, such as {self._first_garbled}; {self._dialect.hint}"
+                coded(
+                    "gps-garbled",
+                    "{garbled} of {received} lines in {within_s:.0f} s could not be read, such as "
+                    "{first}; {hint}",
+                    garbled=self._garbled,
+                    received=received,
+                    within_s=_CHECK_NS / NS_PER_S,
+                    first=self._first_garbled,
+                    hint=self._dialect.hint,
+                )
             )
         self._reset_counts(now_ns)
 
@@ -166,8 +188,8 @@ class GnssReader:
         """Each reason once, however often it is tried again."""
         if reason not in self._silence_reasons:
             self._silence_reasons.add(reason)
-            self._report_fault(f"no fixes: {reason}")
+            self._report_fault(coded("gps-no-fixes", "no fixes: {reason}", reason=reason))
 
     def _report_fault(self, fault: str) -> None:
         logger.warning("%s: %s", self._dialect, fault)
-        self._faults.append(f"{self._dialect}: {fault}")
+        self._faults.append(fault_of(self._dialect.title, fault))

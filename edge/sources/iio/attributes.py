@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from edge.sources.sysfs import number_in, read_if_there, read_text
+from edge.sources.sysfs import no_number, number_in, read_if_there, read_text
 
 IIO_DEVICES = Path("bus") / "iio" / "devices"  # below where sysfs is mounted
 
@@ -42,7 +42,7 @@ def read_number(path: Path) -> float:
     text = read_text(path)
     number = number_in(text)
     if number is None:
-        raise UnusableDeviceError(f"{path.name} is {text!r}, which is no number")
+        raise UnusableDeviceError(no_number(path.name, text))
     return number
 
 

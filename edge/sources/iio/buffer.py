@@ -33,6 +33,7 @@ from edge.sources.iio.stream_monitor import StreamMonitor
 from edge.sources.iio.trigger import Trigger
 from edge.sources.sysfs import write_text
 from shared.clock import Clock
+from shared.coded_text import coded
 
 _WAKE_S = 0.05  # between two reads of a buffer
 _HELD_S = 2.0  # in the buffer between two reads: a machine that is busy loses nothing
@@ -102,10 +103,14 @@ class BufferReader:
 
     def silence_reason(self) -> str:
         if self._times.implausible:
-            return "its samples have times that cannot be; its driver does not stamp them"
-        return (
+            return coded(
+                "iio-times-impossible",
+                "its samples have times that cannot be; its driver does not stamp them",
+            )
+        return coded(
+            "iio-nothing",
             "its buffer is on and nothing comes; check its interrupt line, and interrupts in the "
-            "device tree"
+            "device tree",
         )
 
     def close(self) -> None:
@@ -119,8 +124,11 @@ class BufferReader:
         except OSError as error:
             if is_on and error.errno == errno.EINVAL:
                 raise UnusableDeviceError(
-                    "its driver does not start the capture (invalid argument); it may need a "
-                    "trigger: write ?trigger=NAME"
+                    coded(
+                        "iio-no-capture",
+                        "its driver does not start the capture (invalid argument); it may need a "
+                        "trigger: write ?trigger=NAME",
+                    )
                 ) from error
             raise
 
@@ -134,7 +142,13 @@ class BufferReader:
         captured = enabled_elements(folder)
         missing = needed - {element.name for element in captured}
         if missing:
-            raise UnusableDeviceError(f"its driver does not capture {', '.join(sorted(missing))}")
+            raise UnusableDeviceError(
+                coded(
+                    "iio-not-captured",
+                    "its driver does not capture {channels}",
+                    channels=", ".join(sorted(missing)),
+                )
+            )
         return FrameLayout(captured)
 
     def _read_temperature_scale(self) -> tuple[float, float] | None:

@@ -12,6 +12,7 @@ from edge.sources.iio.block import Block
 from edge.sources.iio.conversion import MAG
 from edge.sources.iio.slow_sensors import MAG_PERIOD_S, STUCK_NS, Reading
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
 _PERIOD_NS = round(0.9 * MAG_PERIOD_S * NS_PER_S)  # as of one that is read apart
 
@@ -58,5 +59,9 @@ class CapturedMagnetometer:
         if int(block.t_ns[-1]) - self._last.t_ns > STUCK_NS:
             self._is_stuck = True
             self._events.append(
-                f"its magnetometer has repeated one value for {STUCK_NS // NS_PER_S} s: it hangs"
+                coded(
+                    "iio-mag-stuck",
+                    "its magnetometer has repeated one value for {stuck_s:.0f} s: it hangs",
+                    stuck_s=STUCK_NS / NS_PER_S,
+                )
             )

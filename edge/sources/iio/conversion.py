@@ -10,6 +10,7 @@ import numpy as np
 from edge.samples import Floats
 from edge.sources.iio.attributes import UnusableDeviceError, find_attribute, read_shared_number
 from edge.sources.sysfs import read_text
+from shared.coded_text import coded
 
 ACCEL, GYRO, MAG = "in_accel", "in_anglvel", "in_magn"  # kinds of channels with three axes
 TEMPERATURE, PRESSURE, TIMESTAMP = "in_temp", "in_pressure", "in_timestamp"
@@ -59,7 +60,11 @@ def parse_mount_matrix(text: str) -> Floats:
         is_rotation = False
     if not is_rotation:
         raise UnusableDeviceError(
-            f"its mount matrix is {text!r}, which is no rotation; correct mount-matrix in the "
-            "device tree"
+            coded(
+                "iio-mount-matrix",
+                "its mount matrix is {text!r}, which is no rotation; correct mount-matrix in the "
+                "device tree",
+                text=text,
+            )
         )
     return matrix

@@ -17,7 +17,11 @@ from edge.sources.iio.settings import IioSettings
 from edge.sources.iio.trigger import Trigger, find_trigger, needs_trigger
 from edge.sources.polled_device import Unreadable
 from shared.clock import Clock
+from shared.coded_text import CodedText, Term, coded
 
+_TWO_DEVICES = coded(
+    "iio-two-devices", "; accelerometer and gyroscope of two devices are written ACCEL+GYRO"
+)
 _TITLES = {ACCEL: "accelerometer", GYRO: "gyroscope"}
 
 
@@ -42,7 +46,18 @@ class InertialDevice:
     captures_mag: bool = False  # its frames have the magnetometer
 
     def __str__(self) -> str:
-        return f"{' and '.join(_TITLES[kind] for kind in self.kinds)} {self.name}"
+        return str(self.title)
+
+    @property
+    def title(self) -> CodedText:
+        """Name for a person."""
+        kinds = " and ".join(_TITLES[kind] for kind in self.kinds)
+        return coded(
+            "device-of-kinds",
+            "{kinds} {name}",
+            kinds=Term("_".join(self.kinds), kinds),
+            name=str(self.name),
+        )
 
 
 def find_inertial_devices(settings: IioSettings, machine: Machine) -> list[InertialDevice]:
@@ -102,7 +117,13 @@ def _require(device: Path, name: DeviceName, kinds: tuple[str, ...]) -> None:
         if _has_channels(device, kind):
             continue
         channels = sorted(path.name.removesuffix("_raw") for path in device.glob("in_*_raw"))
-        both = "; accelerometer and gyroscope of two devices are written ACCEL+GYRO"
         raise UnusableDeviceError(
-            f"{name} has no {_TITLES[kind]}; {listing(channels)}{both if len(kinds) > 1 else ''}"
+            coded(
+                "iio-no-channel",
+                "{name} has no {kind}; {listed}{hint}",
+                name=str(name),
+                kind=Term(kind, _TITLES[kind]),
+                listed=listing(channels),
+                hint=_TWO_DEVICES if len(kinds) > 1 else "",
+            )
         )

@@ -11,6 +11,7 @@ from edge.sources.iio.attributes import UnusableDeviceError, find_attribute, rea
 from edge.sources.iio.conversion import ACCEL, GYRO, axes_of
 from edge.sources.iio.scan_elements import parse_type
 from edge.sources.sysfs import number_in, read_if_there, read_text, write_text
+from shared.coded_text import coded
 
 USUAL_RATE_HZ = 400.0
 _OVERSAMPLING = 2.0  # of a device that is read at times of ours: no value is read twice
@@ -40,7 +41,8 @@ def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> 
     ``asked_hz`` None: nearest to the usual.  Raises OSError and UnusableDeviceError.
     """
     writes: dict[Path, str] = {}
-    wanted_hz, rate_hz, remark = asked_hz or USUAL_RATE_HZ, 0.0, ""
+    wanted_hz, rate_hz = asked_hz or USUAL_RATE_HZ, 0.0
+    remark: str = ""
     for kind in kinds:
         path, offered = _rates(device, kind)
         if path is not None and offered:
@@ -50,9 +52,13 @@ def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> 
             set_hz = read_number(path)  # it offers no choice
         rate_hz = set_hz or wanted_hz
         if asked_hz is not None and abs(rate_hz / asked_hz - 1.0) > _RATE_TOLERANCE:
-            remark = (
-                f"it offers no {asked_hz:g} samples a second but {offered or f'{rate_hz:g}'}; it "
-                f"gives {rate_hz:g}: write ?rate={rate_hz:g}, or another one that it offers"
+            remark = coded(
+                "iio-rate-not-offered",
+                "it offers no {asked_hz:g} samples a second but {offered}; it gives {rate_hz:g}: "
+                "write ?rate={rate_hz:g}, or another one that it offers",
+                asked_hz=asked_hz,
+                offered=offered or f"{rate_hz:g}",
+                rate_hz=rate_hz,
             )
     ranges, full_scales = _plan_ranges(device, kinds)
     return CapturePlan((*ranges, *writes.items()), rate_hz, full_scales, remark)
@@ -137,7 +143,13 @@ def _most_raw(device: Path, axis: str) -> float | None:
 def _in_range(offered: str, wanted: float) -> str:
     values = [_number(each) for each in offered.strip("[]").split()]
     if len(values) != 3:
-        raise UnusableDeviceError(f"it offers {offered!r}, which is no [LEAST STEP MOST]")
+        raise UnusableDeviceError(
+            coded(
+                "iio-offers-no-range",
+                "it offers {offered!r}, which is no [LEAST STEP MOST]",
+                offered=offered,
+            )
+        )
     least, step, most = values
     steps = 0 if not step else round((min(wanted, most) - least) / step)
     return f"{min(most, least + max(0, steps) * step):.9g}"
@@ -146,7 +158,13 @@ def _in_range(offered: str, wanted: float) -> str:
 def _values(offered: str) -> list[str]:
     values = offered.split()
     if not values or not all(_number(each) > 0.0 for each in values):
-        raise UnusableDeviceError(f"it offers {offered!r}, where positive numbers should be")
+        raise UnusableDeviceError(
+            coded(
+                "iio-offers-no-numbers",
+                "it offers {offered!r}, where positive numbers should be",
+                offered=offered,
+            )
+        )
     return values
 
 

@@ -16,6 +16,7 @@ from edge.sources.iio.conversion import TEMPERATURE, axes_of, read_conversion
 from edge.sources.iio.plan import CapturePlan
 from edge.sources.iio.stream_monitor import StreamMonitor
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 
 POLLING_RATE_HZ = 100.0
 _TEMPERATURE_NS = NS_PER_S
@@ -66,7 +67,7 @@ class PollingReader:
         return self._monitor.take_events()
 
     def silence_reason(self) -> str:
-        return "it takes too long to read"
+        return coded("iio-slow", "it takes too long to read")
 
     def close(self) -> None:
         """Nothing is held open between readings."""

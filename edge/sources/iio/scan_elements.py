@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from edge.sources.iio.attributes import UnusableDeviceError, is_one, read_number
 from edge.sources.sysfs import read_text
+from shared.coded_text import coded
 
 _TYPE = re.compile(r"(be|le):([su])(\d+)/(\d+)(?:X(\d+))?(?:>>(\d+))?")
 _STORAGE_BITS = (8, 16, 32, 64)
@@ -57,7 +58,9 @@ def parse_type(text: str) -> ElementType:
     """Raises UnusableDeviceError."""
     match = _TYPE.fullmatch(text)
     if match is None:
-        raise UnusableDeviceError(f"{text!r} is no type of a scan element")
+        raise UnusableDeviceError(
+            coded("iio-no-type", "{text!r} is no type of a scan element", text=text)
+        )
     endianness, sign, bits, storage_bits, repeat, shift = match.groups()
     of = ElementType(
         is_big_endian=endianness == "be",
@@ -68,7 +71,13 @@ def parse_type(text: str) -> ElementType:
         repeat=max(1, int(repeat or 1)),
     )
     if of.storage_bits not in _STORAGE_BITS or not 0 < of.bits <= of.storage_bits - of.shift:
-        raise UnusableDeviceError(f"{text!r} is a type of a scan element that cannot be read")
+        raise UnusableDeviceError(
+            coded(
+                "iio-other-type",
+                "{text!r} is a type of a scan element that cannot be read",
+                text=text,
+            )
+        )
     return of
 
 

@@ -22,6 +22,7 @@ from edge.sources.iio.attributes import (
 from edge.sources.iio.conversion import MAG, PRESSURE, UT_PER_GAUSS, axes_of, read_conversion
 from edge.sources.polled_device import PolledDevice, Unreadable
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded, text_of_error
 
 MAG_PERIOD_S, _PRESSURE_PERIOD_S = 0.05, 0.1
 _PA_PER_KPA = 1000.0
@@ -73,7 +74,13 @@ class SlowSensor:
             return values
         last = self._last
         if last is not None and values == last.values and t_ns - last.t_ns > STUCK_NS:
-            return Unreadable(f"it has repeated one value for {STUCK_NS // NS_PER_S} s: it hangs")
+            return Unreadable(
+                coded(
+                    "reading-stuck",
+                    "it has repeated one value for {stuck_s:.0f} s: it hangs",
+                    stuck_s=STUCK_NS / NS_PER_S,
+                )
+            )
         return Reading((t_ns + self._clock.monotonic_ns()) // 2, values)
 
 
@@ -85,7 +92,8 @@ def open_magnetometer(name: DeviceName, sysfs: Path, clock: Clock) -> SlowSensor
         field_ut = UT_PER_GAUSS * read_conversion(device, MAG).apply(raw)[0]
         return tuple(field_ut.tolist())
 
-    return SlowSensor(f"magnetometer {name}", _reader_of(name, sysfs, read), MAG_PERIOD_S, clock)
+    title = coded("device-magnetometer", "magnetometer {name}", name=str(name))
+    return SlowSensor(title, _reader_of(name, sysfs, read), MAG_PERIOD_S, clock)
 
 
 def open_barometer(name: DeviceName, sysfs: Path, clock: Clock) -> SlowSensor:
@@ -95,10 +103,17 @@ def open_barometer(name: DeviceName, sysfs: Path, clock: Clock) -> SlowSensor:
         pressure_pa = _PA_PER_KPA * read_scaled(device, PRESSURE, PRESSURE)
         least_pa, most_pa = _PRESSURE_PA
         if not least_pa <= pressure_pa <= most_pa:
-            raise UnusableDeviceError(f"it shows {pressure_pa:.0f} Pa, which is no air pressure")
+            raise UnusableDeviceError(
+                coded(
+                    "pressure-impossible",
+                    "it shows {pressure_pa:.0f} Pa, which is no air pressure",
+                    pressure_pa=round(pressure_pa),
+                )
+            )
         return (pressure_pa,)
 
-    return SlowSensor(f"barometer {name}", _reader_of(name, sysfs, read), _PRESSURE_PERIOD_S, clock)
+    title = coded("device-barometer", "barometer {name}", name=str(name))
+    return SlowSensor(title, _reader_of(name, sysfs, read), _PRESSURE_PERIOD_S, clock)
 
 
 def _reader_of(
@@ -111,7 +126,9 @@ def _reader_of(
         try:
             values = read(device)
         except UnusableDeviceError as error:
-            return Unreadable(str(error))
-        return values if all(map(math.isfinite, values)) else Unreadable("it shows no number")
+            return Unreadable(text_of_error(error))
+        if all(map(math.isfinite, values)):
+            return values
+        return Unreadable(coded("reading-no-number", "it shows no number"))
 
     return find_and_read

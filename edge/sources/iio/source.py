@@ -14,6 +14,7 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 from threading import Event
 
+from edge.fault_texts import fault_of, no_samples
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.iio.attributes import UnusableDeviceError
 from edge.sources.iio.block import Block, DeviceReader
@@ -28,6 +29,7 @@ from edge.sources.iio.slow_sensors import SlowSensor, open_barometer, open_magne
 from edge.sources.interface import Outage
 from edge.sources.sysfs import SYSFS, explain_read_error
 from shared.clock import NS_PER_S, Clock, SystemClock
+from shared.coded_text import CodedText, coded, text_of_error
 
 logger = logging.getLogger(__name__)
 
@@ -108,7 +110,7 @@ class IioSource:
                 except OSError as error:
                     self._report_silence(explain_read_error(error))
                 except UnusableDeviceError as error:
-                    self._report_silence(str(error))
+                    self._report_silence(text_of_error(error))
                 if len(self._rows):
                     yield self._cut()
                 self._closed.wait(_RETRY_S if self.taken == before else _QUICK_RETRY_S)
@@ -118,7 +120,11 @@ class IioSource:
         )
 
     def __str__(self) -> str:
-        return f"inertial sensor {self._settings}"
+        return str(self._title)
+
+    @property
+    def _title(self) -> CodedText:
+        return coded("device-inertial", "inertial sensor {name}", name=str(self._settings))
 
     def _slow(self) -> tuple[SlowSensor, ...]:
         return tuple(sensor for sensor in (self._mag, self._barometer) if sensor is not None)
@@ -216,33 +222,48 @@ class IioSource:
         for device, reader, at_ns in zip(devices, readers, last_ns, strict=True):
             if now_ns - at_ns > _SILENT_NS:
                 raise UnusableDeviceError(
-                    f"the {device} has given none for {_SILENT_NS // NS_PER_S} s: "
-                    f"{reader.silence_reason()}"
+                    coded(
+                        "iio-silent",
+                        "the {device} has given none for {silent_s:.0f} s: {reason}",
+                        device=device.title,
+                        silent_s=_SILENT_NS / NS_PER_S,
+                        reason=reader.silence_reason(),
+                    )
                 )
 
     def _report_remarks(self, devices: list[InertialDevice]) -> None:
         for device in devices:
             how = "captured" if device.is_captured else "polled, as it has no buffer or no trigger"
             logger.info("%s: %s at %g samples/s", device, how, device.plan.rate_hz)
-            self._report_once(device.plan.remark and f"{device}: {device.plan.remark}")
-            self._report_once(self._mag_remark(device))
+            for remark in (device.plan.remark, self._mag_remark(device)):
+                self._report_once(remark and fault_of(device.title, remark))
         rate_hz, described_hz = devices[-1].plan.rate_hz, self._description.rate_hz
         if abs(rate_hz / described_hz - 1.0) > _RATE_OFF:
             self._report_once(
-                f"it gives {rate_hz:g} samples a second and was taken for one of "
-                f"{described_hz:g} before it was there: restart the unit's agent"
+                coded(
+                    "iio-rate-changed",
+                    "it gives {rate_hz:g} samples a second and was taken for one of "
+                    "{described_hz:g} before it was there: restart the unit's agent",
+                    rate_hz=rate_hz,
+                    described_hz=described_hz,
+                )
             )
 
     def _mag_remark(self, device: InertialDevice) -> str:
         if device.has_mag and device.is_captured and not device.captures_mag:
-            return f"{device}: its driver does not capture its magnetometer: that is not read"
-        if device.has_mag and not self._description.mag_present:
-            return (
-                f"{device}: it has a magnetometer, and was taken for one without before it was "
-                "there: restart the unit's agent"
+            return coded(
+                "iio-mag-not-captured",
+                "its driver does not capture its magnetometer: that is not read",
             )
-        is_asked = self._settings.mag == device.name
-        return f"{device}: it has no magnetometer" if is_asked and not device.has_mag else ""
+        if device.has_mag and not self._description.mag_present:
+            return coded(
+                "iio-mag-found",
+                "it has a magnetometer, and was taken for one without before it was there: restart "
+                "the unit's agent",
+            )
+        if self._settings.mag == device.name and not device.has_mag:
+            return coded("iio-no-mag", "it has no magnetometer")
+        return ""
 
     def _report_once(self, remark: str) -> None:
         if remark and remark not in self._remarks:
@@ -251,13 +272,13 @@ class IioSource:
 
     def _report_events(self, device: InertialDevice, reader: DeviceReader) -> None:
         for event in (*reader.take_events(), *self._captured_mag.take_events()):
-            self._report_fault(f"{device}: {event}")
+            self._report_fault(fault_of(device.title, event))
 
     def _report_silence(self, reason: str) -> None:
         """Report each reason once, however often it is tried again."""
         if reason not in self._silence_reasons:
             self._silence_reasons.add(reason)
-            self._report_fault(f"no samples: {reason}")
+            self._report_fault(no_samples(reason))
 
     def _report_return(self) -> None:
         if self._silence_reasons:
@@ -266,4 +287,4 @@ class IioSource:
 
     def _report_fault(self, fault: str) -> None:
         logger.warning("%s: %s", self, fault)
-        self._faults.append(f"{self}: {fault}")
+        self._faults.append(fault_of(self._title, fault))

@@ -6,6 +6,7 @@ import numpy as np
 
 from edge.samples import Nanoseconds
 from shared.clock import NS_PER_S
+from shared.coded_text import CodedText, coded
 
 _CHECK_NS = 10 * NS_PER_S
 _MANY = 0.01  # of the samples: a device that loses more is worth a look
@@ -20,7 +21,7 @@ class StreamMonitor:
         self._rate_hz = rate_hz
         self._last_ns: int | None = None
         self._since_ns: int | None = None
-        self._reported: set[str] = set()  # kinds of faults that last
+        self._reported: set[str] = set()  # codes of faults that last
         self._reset()
 
     def _reset(self) -> None:
@@ -49,21 +50,43 @@ class StreamMonitor:
         known = self._count + self._lost
         is_slow = abs(rate_hz / self._rate_hz - 1.0) > _RATE_OFF
         faults = [
-            *self._report("rate", is_slow, f"it gives {rate_hz:.0f} samples a second and is set to "
-                          f"{self._rate_hz:g}: its bus or this machine is too slow, or ?rate= is "
-                          "not what it can do"),
-            *self._report("lost", not is_slow and self._lost > _MANY * known,
-                          f"{self._lost} of {known} samples in 10 s were lost: this machine is too "
-                          "busy, or the bus too slow"),
-            *self._report("times", self._unplaced > _MANY * known,
-                          f"{self._unplaced} of {known} samples in 10 s came with a time that "
-                          "had been or cannot be, and were left out"),
-        ]  # fmt: skip
+            *self._report(
+                is_slow,
+                coded(
+                    "iio-rate",
+                    "it gives {rate_hz:.0f} samples a second and is set to {set_hz:g}: its bus or "
+                    "this machine is too slow, or ?rate= is not what it can do",
+                    rate_hz=round(rate_hz),
+                    set_hz=self._rate_hz,
+                ),
+            ),
+            *self._report(
+                not is_slow and self._lost > _MANY * known,
+                coded(
+                    "iio-lost",
+                    "{lost} of {known} samples in 10 s were lost: this machine is too busy, or the "
+                    "bus too slow",
+                    lost=self._lost,
+                    known=known,
+                ),
+            ),
+            *self._report(
+                self._unplaced > _MANY * known,
+                coded(
+                    "iio-times",
+                    "{unplaced} of {known} samples in 10 s came with a time that had been or "
+                    "cannot be, and were left out",
+                    unplaced=self._unplaced,
+                    known=known,
+                ),
+            ),
+        ]
         self._reset()
         self._since_ns = self._last_ns
         return faults
 
-    def _report(self, kind: str, holds: bool, text: str) -> list[str]:  # a condition
+    def _report(self, holds: bool, text: CodedText) -> list[str]:  # a condition
+        kind = text.code.code
         if not holds:
             self._reported.discard(kind)
             return []

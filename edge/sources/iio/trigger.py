@@ -8,6 +8,7 @@ from pathlib import Path
 from edge.sources.device_name import listing
 from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
 from edge.sources.sysfs import devices_in, read_if_there, write_text
+from shared.coded_text import coded
 
 _CURRENT = Path("trigger") / "current_trigger"  # below the device
 _FREQUENCY = "sampling_frequency"  # of a timer
@@ -49,7 +50,14 @@ def find_trigger(device: Path, sysfs: Path, wanted: str) -> Trigger | None:
     }
     if wanted:
         if wanted not in triggers:
-            raise UnusableDeviceError(f"there is no trigger {wanted}; {listing(sorted(triggers))}")
+            raise UnusableDeviceError(
+                coded(
+                    "iio-no-trigger",
+                    "there is no trigger {name}; {listed}",
+                    name=wanted,
+                    listed=listing(sorted(triggers)),
+                )
+            )
         return Trigger(wanted, triggers[wanted])
     current = read_if_there(device / _CURRENT)
     if current:

@@ -13,8 +13,9 @@ from pathlib import Path
 
 from edge.sources.device_name import find_device, listing, parse_device_name
 from edge.sources.polled_device import Unreadable
-from edge.sources.sysfs import number_in, read_if_there, read_text
-from edge.sources.temperature.interface import SensorRole
+from edge.sources.sysfs import no_number, number_in, read_if_there, read_text
+from edge.sources.temperature.interface import SensorRole, several_temperatures
+from shared.coded_text import CodedText, coded
 from shared.errors import ConfigError
 
 # Chips that measure the machine itself, by their drivers' names.
@@ -47,11 +48,16 @@ class HwmonSensor:
         if isinstance(found, Unreadable):
             return found
         if read_if_there(chip / f"{found}_fault") == "1":
-            return Unreadable("open circuit or short: the chip reports a fault of its sensor")
+            return Unreadable(
+                coded(
+                    "temperature-chip-fault",
+                    "open circuit or short: the chip reports a fault of its sensor",
+                )
+            )
         text = read_text(chip / f"{found}_input")
         milli_degc = number_in(text)
         if milli_degc is None:
-            return Unreadable(f"{found}_input is {text!r}, which is no number")
+            return Unreadable(no_number(f"{found}_input", text))
         return milli_degc * 1e-3
 
     def _input(self, chip: Path) -> str | Unreadable:
@@ -67,8 +73,16 @@ class HwmonSensor:
                 return name
         there = listing(sorted(f"{self._wanted}/{label}" for label in labels.values()))
         if not self._wanted.channel:
-            return Unreadable(f"{self._wanted} has {len(labels)} temperatures; {there}")
-        return Unreadable(f"{self._wanted} has no input {self._wanted.channel}; {there}")
+            return Unreadable(several_temperatures(str(self._wanted), len(labels), there))
+        return Unreadable(
+            coded(
+                "temperature-no-input",
+                "{device} has no input {name}; {listed}",
+                device=str(self._wanted),
+                name=self._wanted.channel,
+                listed=there,
+            )
+        )
 
 
 def _is_thermal_zone(chip: Path) -> bool:
@@ -76,8 +90,10 @@ def _is_thermal_zone(chip: Path) -> bool:
     return (chip / "device").resolve().name.startswith("thermal_zone")
 
 
-def _refusal(name: str) -> str:
-    return (
-        f"{name} measures the machine itself, not the air around it; write "
-        "role=electronics to have it as the unit's own temperature"
+def _refusal(name: str) -> CodedText:
+    return coded(
+        "temperature-of-machine",
+        "{name} measures the machine itself, not the air around it; write role=electronics to "
+        "have it as the unit's own temperature",
+        name=name,
     )

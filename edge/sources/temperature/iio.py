@@ -15,6 +15,7 @@ import errno
 import re
 from pathlib import Path
 
+from edge.fault_texts import fault_of
 from edge.sources.device_name import find_device, listing, parse_device_name
 from edge.sources.iio.attributes import (
     IIO_DEVICES,
@@ -23,7 +24,8 @@ from edge.sources.iio.attributes import (
     read_scaled,
 )
 from edge.sources.polled_device import Unreadable
-from edge.sources.temperature.interface import SensorRole
+from edge.sources.temperature.interface import SensorRole, several_temperatures
+from shared.coded_text import coded, text_of_error
 from shared.errors import ConfigError
 
 _CHANNEL = re.compile(r"in_temp_?(\w*?)_?(?:raw|input)")
@@ -31,8 +33,13 @@ _KIND = "in_temp"
 _COLD_JUNCTION = "ambient"
 _UNSIGNED_BITS = {"mcp9600": 16}  # its driver hands over the register without its sign
 _FAULTS = {
-    "fault_oc": "open circuit: the thermocouple is broken or not connected",
-    "fault_ovuv": "short circuit: over- or undervoltage at the thermocouple's input",
+    "fault_oc": coded(
+        "thermocouple-open", "open circuit: the thermocouple is broken or not connected"
+    ),
+    "fault_ovuv": coded(
+        "thermocouple-short",
+        "short circuit: over- or undervoltage at the thermocouple's input",
+    ),
 }
 
 
@@ -63,11 +70,14 @@ class IioSensor:
             signed_bits = _UNSIGNED_BITS.get(self._wanted.name)
             return 1e-3 * read_scaled(device, channel, _KIND, signed_bits=signed_bits)
         except UnusableDeviceError as error:
-            return Unreadable(f"{self._wanted}: {error}")
+            return Unreadable(fault_of(str(self._wanted), text_of_error(error)))
         except OSError as error:
             if error.errno == errno.EINVAL:
                 return Unreadable(
-                    "open circuit or short: the converter reports a fault of its thermocouple"
+                    coded(
+                        "thermocouple-fault",
+                        "open circuit or short: the converter reports a fault of its thermocouple",
+                    )
                 )
             raise
 
@@ -80,11 +90,19 @@ class IioSensor:
             return _beginning(wanted)
         there = listing(f"{self._wanted}/{one}" if one else str(self._wanted) for one in channels)
         if wanted:
-            return Unreadable(f"{self._wanted} has no temperature {wanted}; {there}")
+            return Unreadable(
+                coded(
+                    "temperature-unknown",
+                    "{device} has no temperature {name}; {listed}",
+                    device=str(self._wanted),
+                    name=wanted,
+                    listed=there,
+                )
+            )
         others = [one for one in channels if one != _COLD_JUNCTION]
         if len(others) == 1:
             return _beginning(others[0])
-        return Unreadable(f"{self._wanted} has {len(others)} temperatures; {there}")
+        return Unreadable(several_temperatures(str(self._wanted), len(others), there))
 
 
 def _beginning(channel: str) -> str:

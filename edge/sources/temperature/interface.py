@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from edge.sources.polled_device import Unreadable
+from shared.coded_text import CodedText, coded
 
 RANGE_DEGC = (-55.0, 1250.0)  # what any of them can measure; beyond is a fault, not heat
 
@@ -18,6 +19,17 @@ class SensorRole(StrEnum):
 
     ENVIRONMENT = "environment"  # the air around the equipment: heat alarms
     ELECTRONICS = "electronics"  # inside the unit: it shows whether the unit will last
+
+
+def several_temperatures(device: str, count: int, listed: str) -> CodedText:
+    """Reason that a device is not read: none of its temperatures is named in the settings."""
+    return coded(
+        "temperatures-several",
+        "{device} has {count} temperatures; {listed}",
+        device=device,
+        count=count,
+        listed=listed,
+    )
 
 
 class TemperatureSensor(Protocol):

@@ -10,6 +10,7 @@ from edge.samples import AmbientSample, ElectronicsSample
 from edge.sources.polled_device import PolledDevice, Unreadable
 from edge.sources.temperature.interface import RANGE_DEGC, SensorRole, TemperatureSensor
 from shared.clock import Clock
+from shared.coded_text import coded
 
 _PERIOD_S = 0.5
 
@@ -29,10 +30,15 @@ class NamedSensor:
             return found
         least_degc, most_degc = RANGE_DEGC
         if not least_degc <= found <= most_degc:
-            shown = f"{found:.0f} °C" if math.isfinite(found) else "no number"
             return Unreadable(
-                f"it shows {shown}, which is not between {least_degc:g} and {most_degc:g} °C: the "
-                "sensor is open, shorted or set wrongly"
+                coded(
+                    "temperature-impossible",
+                    "it shows {shown}, which is not between {least_degc:g} and {most_degc:g} °C: "
+                    "the sensor is open, shorted or set wrongly",
+                    shown=f"{found:.0f} °C" if math.isfinite(found) else "?",
+                    least_degc=least_degc,
+                    most_degc=most_degc,
+                )
             )
         kind = AmbientSample if self.role is SensorRole.ENVIRONMENT else ElectronicsSample
         return kind(clock.monotonic_ns(), found, self.name)
@@ -62,5 +68,10 @@ class TemperatureReader:
 
 
 def _device(sensor: NamedSensor, clock: Clock) -> PolledDevice[AmbientSample | ElectronicsSample]:
-    title = f"temperature sensor {sensor.name} ({sensor.text})"
+    title = coded(
+        "device-temperature",
+        "temperature sensor {name} ({settings})",
+        name=sensor.name,
+        settings=sensor.text,
+    )
     return PolledDevice(title, lambda: sensor.read(clock), _PERIOD_S, clock)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlsplit
 
 from edge.sources.transport.connection import Connection, SerialConnection, TcpConnection, speed_of
+from shared.coded_text import coded
 from shared.errors import ConfigError
 from shared.host_names import can_be_looked_up
 
@@ -99,13 +100,20 @@ def parse_options(
     return values
 
 
-_DISCONNECTED = "it went away; is the cable in, and the device on and charged?"
-_NO_DEVICE = "there is no such device; is the cable in, and the device on?"
-_NO_ROUTE = "there is no way to that address; is this machine in its network?"
-_NO_PORT = "it is no serial port; check the path"
-_NO_PERMISSION = "this program may not read it; add its user to the group that owns it (dialout)"
+_DISCONNECTED = coded("line-gone", "it went away; is the cable in, and the device on and charged?")
+_NO_DEVICE = coded("line-no-device", "there is no such device; is the cable in, and the device on?")
+_NO_ROUTE = coded(
+    "line-no-route", "there is no way to that address; is this machine in its network?"
+)
+_NO_PORT = coded("line-no-port", "it is no serial port; check the path")
+_NO_PERMISSION = coded(
+    "line-not-permitted",
+    "this program may not read it; add its user to the group that owns it (dialout)",
+)
 _EXPLANATIONS = {
-    errno.ECONNREFUSED: "the connection is refused; is the port right, and the device's own?",
+    errno.ECONNREFUSED: coded(
+        "line-refused", "the connection is refused; is the port right, and the device's own?"
+    ),
     errno.EHOSTUNREACH: _NO_ROUTE,
     errno.ENETUNREACH: _NO_ROUTE,
     errno.ENOENT: _NO_DEVICE,
@@ -113,7 +121,7 @@ _EXPLANATIONS = {
     errno.ENODEV: _NO_DEVICE,
     errno.EACCES: _NO_PERMISSION,
     errno.EPERM: _NO_PERMISSION,
-    errno.EBUSY: "another program is reading it; end that one",
+    errno.EBUSY: coded("line-busy", "another program is reading it; end that one"),
     errno.ENOTTY: _NO_PORT,
     errno.EISDIR: _NO_PORT,
     errno.EIO: _DISCONNECTED,
@@ -125,7 +133,13 @@ _EXPLANATIONS = {
 def explain_os_error(error: OSError, place: TransportAddress) -> str:
     """Return what a person can do about a line that cannot be opened or read."""
     if isinstance(error, socket.gaierror):
-        return f"the name {place.host} is not known here; check the address"
+        return coded(
+            "line-unknown-name",
+            "the name {host} is not known here; check the address",
+            host=place.host,
+        )
     if isinstance(error, TimeoutError):
-        return "it does not answer; is it on, and this machine in its network?"
-    return _EXPLANATIONS.get(error.errno or 0, str(error))
+        return coded(
+            "line-no-answer", "it does not answer; is it on, and this machine in its network?"
+        )
+    return _EXPLANATIONS.get(error.errno or 0) or str(error)

@@ -6,6 +6,7 @@ import logging
 
 from edge.sources.ximu3.messages import Inertial, Message
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
@@ -55,17 +56,23 @@ class MessageMonitor:
 
     def silence_reason(self) -> str:
         if self._has_inertial:
-            return "it has fallen silent; is it on, in reach and charged?"
+            return coded("ximu-silent", "it has fallen silent; is it on, in reach and charged?")
         if self._understood > self._garbled:
-            return "it sends no inertial messages; set its inertial message rate divisor to 1"
-        if self._garbled:
-            return (
-                f"what comes is no x-IMU3's: {self._first_garbled}; is this the right device, and "
-                "on a serial line the right ?baud="
+            return coded(
+                "ximu-no-inertial",
+                "it sends no inertial messages; set its inertial message rate divisor to 1",
             )
-        return (
+        if self._garbled:
+            return coded(
+                "ximu-other-device",
+                "what comes is no x-IMU3's: {garbled}; is this the right device, and on a serial "
+                "line the right ?baud=",
+                garbled=self._first_garbled,
+            )
+        return coded(
+            "ximu-nothing",
             "the line is open and nothing comes; is the device on, and are its data messages "
-            "switched on for this line?"
+            "switched on for this line?",
         )
 
     def take_events(self, now_ns: int) -> list[str]:
@@ -85,15 +92,20 @@ class MessageMonitor:
             self._loss_reported = False
             return []
         received = self._garbled + self._understood
-        found = (
-            f"{self._garbled} of {received} messages in {_CHECK_NS // NS_PER_S} s could not be "
-            f"read, such as {self._first_garbled}"
+        found = coded(
+            "ximu-garbled",
+            "{garbled} of {received} messages in {within_s:.0f} s could not be read, such as "
+            "{first}; look at the cable, the radio or ?baud=",
+            garbled=self._garbled,
+            received=received,
+            within_s=_CHECK_NS / NS_PER_S,
+            first=self._first_garbled,
         )
         if self._garbled <= _MANY * received or self._loss_reported:
             logger.info(found)
             return []
         self._loss_reported = True
-        return [f"{found}; look at the cable, the radio or ?baud="]
+        return [found]
 
     def _rate_fault(self) -> list[str]:
         """Compare the rate by the device's own clock, once: it is a setting."""
@@ -107,6 +119,11 @@ class MessageMonitor:
             return []
         self._rate_reported = True
         return [
-            f"it sends {rate_hz:.0f} samples a second, configured are {self._rate_hz:g}; set "
-            f"its inertial message rate divisor to 1 (400 a second), or write ?rate={rate_hz:.0f}"
+            coded(
+                "ximu-rate",
+                "it sends {rate_hz:.0f} samples a second, configured are {set_hz:g}; set its "
+                "inertial message rate divisor to 1 (400 a second), or write ?rate={rate_hz:.0f}",
+                rate_hz=round(rate_hz),
+                set_hz=self._rate_hz,
+            )
         ]

@@ -15,6 +15,7 @@ from threading import Event
 
 import numpy as np
 
+from edge.fault_texts import fault_of, no_samples
 from edge.samples import (
     ACKNOWLEDGE,
     BatterySample,
@@ -51,6 +52,7 @@ from edge.sources.ximu3.messages import (
     message_of,
 )
 from shared.clock import NS_PER_S, Clock, SystemClock
+from shared.coded_text import coded
 from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
@@ -172,7 +174,9 @@ class Ximu3Source:
         while not self._closed.is_set():
             data = line.read()
             if data == b"":
-                self._report_silence("it has ended the connection; is it on, and charged?")
+                self._report_silence(
+                    coded("ximu-ended", "it has ended the connection; is it on, and charged?")
+                )
                 return
             arrival_ns = self._clock.monotonic_ns()
             before = self.taken
@@ -229,7 +233,7 @@ class Ximu3Source:
                 self._rows.take_button(is_down=message.is_down)
             case Notification(text=text, is_error=True) if text not in self._reported:
                 self._reported.append(text)
-                self._report_fault(f"it reports an error: {text}")
+                self._report_fault(coded("ximu-error", "it reports an error: {error}", error=text))
             case Notification(text=text):
                 logger.info("%s says: %s", self._settings, text)
 
@@ -237,7 +241,7 @@ class Ximu3Source:
         """Report each reason once, however often it is tried again."""
         if reason not in self._silence_reasons:
             self._silence_reasons.add(reason)
-            self._report_fault(f"no samples: {reason}")
+            self._report_fault(no_samples(reason))
 
     def _report_return(self) -> None:
         if self._silence_reasons:
@@ -246,7 +250,7 @@ class Ximu3Source:
 
     def _report_fault(self, fault: str) -> None:
         logger.warning("%s: %s", self._settings, fault)
-        self._faults.append(f"{self._settings}: {fault}")
+        self._faults.append(fault_of(str(self._settings), fault))
 
 
 class _Rows:

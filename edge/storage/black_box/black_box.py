@@ -24,6 +24,7 @@ from edge.storage.disk_watchdog import HANGS_S, DiskWatchdog
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, Clock
 from shared.codec import encode
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_began_ns, segment_paths
 from shared.messages import Message, UnitDescription
@@ -86,11 +87,17 @@ class BlackBox:
     def fault(self) -> str | None:
         """Reason that samples are not kept; None while they are."""
         if not self._worker.is_alive:
-            return "the black box has stopped"
+            return coded("black-box-stopped", "the black box has stopped")
         if self._worker.fault:
-            return f"the black box fails: {self._worker.fault}"
+            return coded(
+                "black-box-fails", "the black box fails: {error}", error=self._worker.fault
+            )
         if self._disk.hangs:
-            return f"the black box hangs: the disk has not answered for {HANGS_S:.0f} s"
+            return coded(
+                "black-box-hangs",
+                "the black box hangs: the disk has not answered for {silent_s:.0f} s",
+                silent_s=HANGS_S,
+            )
         return self._problem
 
     def write(self, raw: Raw) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from shared.coded_text import coded
 from shared.errors import StoreError
 
 # Of a disk that is full, or has failed and can only be read.
@@ -51,7 +52,14 @@ def as_store_error(path: Path) -> Iterator[None]:
     try:
         yield
     except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
-        raise StoreError(f"the journal {path} cannot be used: {error}") from error
+        raise StoreError(
+            coded(
+                "journal-unusable",
+                "the journal {path} cannot be used: {error}",
+                path=str(path),
+                error=str(error),
+            )
+        ) from error
 
 
 def replacement_of(path: Path) -> Path:

@@ -39,6 +39,7 @@ from edge.storage.journal.schema import (
     priority_of,
 )
 from shared.channels import Channel
+from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.messages import JournalBoot, JournalEntry
 
@@ -87,7 +88,7 @@ class Journal:
         self.first_seq = 1  # the oldest of this boot that is kept
         self.last_seq = 0  # the newest of this boot that is on disk
         self.rows_evicted = 0  # unacknowledged messages given up for room
-        self.damage = ""  # why a new file was begun, for a person
+        self.damage: str = ""  # why a new file was begun, for a person
         self._read_damage = ""  # the same, as a reader has found out
         self._connection: sqlite3.Connection | None = None
         self._boot = 0
@@ -261,7 +262,11 @@ class Journal:
         """Begin a new file, once: a disk that damages it as well is not filled with more of
         them.
         """
-        self.damage = f"the journal is damaged ({damage}); it is left alone, and a new one is begun"
+        self.damage = coded(
+            "journal-damaged",
+            "the journal is damaged ({damage}); it is left alone, and a new one is begun",
+            damage=damage,
+        )
         self.first_seq = self.last_seq + 1
         if self._connection is not None:
             self._connection.close()

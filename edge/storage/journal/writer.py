@@ -16,6 +16,7 @@ from threading import Condition
 from edge.storage.disk_watchdog import HANGS_S, DiskWatchdog
 from edge.storage.journal.journal import Journal, JournalRow
 from shared.channels import Qos
+from shared.coded_text import coded, text_of_error
 from shared.errors import StoreError
 from shared.worker import UNTIL_WOKEN, Worker
 
@@ -50,7 +51,11 @@ class JournalWriter:
     def fault(self) -> str | None:
         """Reason that the journal cannot be written; None while it can."""
         if self._disk.hangs and self._refusal is None:
-            return f"the journal hangs: the disk has not answered for {HANGS_S:.0f} s"
+            return coded(
+                "journal-hangs",
+                "the journal hangs: the disk has not answered for {silent_s:.0f} s",
+                silent_s=HANGS_S,
+            )
         return self._refusal
 
     @property
@@ -109,7 +114,7 @@ class JournalWriter:
             with self._disk.request():
                 self._journal.append(messages)
         except StoreError as error:
-            return str(error)
+            return text_of_error(error)
         return None
 
     def _log_change(self, refusal: str | None) -> None:

@@ -24,15 +24,12 @@ from edge.tracker.registry import (
     fits_places,
     make_multi_sensor_tracker,
 )
+from shared.coded_text import CodedText, coded
 from shared.errors import ConfigError
 
 AUTO = "auto"  # by place, which is recognised by motion where it is not set
 BY_PLACE = "by-place"  # as on a foot where it is not set
 _ON_FOOT, _ELSEWHERE = "eskf", "body"  # of one sensor, where none was named
-_USUAL_LEG = (
-    "takes a usual leg length, as none is set: distances are off by as much as that is; give "
-    "wearer.leg_length_m or wearer.height_m"
-)
 
 Sensors = Mapping[str, SensorDescription]  # by name; each says its place, empty where unknown
 
@@ -105,14 +102,19 @@ def select_named(tracker: str, sensors: Sensors, dimensions: BodyDimensions) -> 
         if fits_places(entry, [sensors[name].place for name in names]):
             notes = _unused(tracker, sensors, names)
             if _needs_leg_length(entry) and dimensions == BodyDimensions():
-                notes = (*notes, f"tracker {tracker} {_USUAL_LEG}")
+                notes = (*notes, _usual_leg(tracker))
             return TrackerSelection(tracker, names, notes)
     instead = select_automatically(sensors)
     needed = " and ".join(" or ".join(choices) for choices in entry.places)
     has = ", ".join(sensor.place or "an unknown place" for sensor in sensors.values())
-    note = (
-        f"tracker {tracker} needs one sensor each at {needed}, and this unit has {has}: "
-        f"{instead.tracker} tracks instead"
+    note = coded(
+        "tracker-needs",
+        "tracker {tracker} needs one sensor each at {needed}, and this unit has {has}: {instead} "
+        "tracks instead",
+        tracker=tracker,
+        needed=needed,
+        has=has,
+        instead=instead.tracker,
     )
     return TrackerSelection(instead.tracker, instead.sensors, (note, *instead.notes))
 
@@ -140,14 +142,25 @@ def _select_one(entry: TrackerEntry, sensors: Sensors) -> TrackerSelection:
     if place and name not in names:
         notes = (
             *notes,
-            f"tracker {entry.name} is made for {' or '.join(entry.worn_on)}, and the sensor is "
-            f"worn on {place}: set tracker to {AUTO}",
+            coded(
+                "tracker-made-for",
+                "tracker {tracker} is made for {places}, and the sensor is worn on {place}: set "
+                "tracker to {auto}",
+                tracker=entry.name,
+                places=" or ".join(entry.worn_on),
+                place=place,
+                auto=AUTO,
+            ),
         )
     if entry.by_compass and not sensors[name].mag_present:
         notes = (
             *notes,
-            f"tracker {entry.name} keeps its heading by the compass, and the sensor has no "
-            "magnetometer: the heading drifts",
+            coded(
+                "tracker-no-compass",
+                "tracker {tracker} keeps its heading by the compass, and the sensor has no "
+                "magnetometer: the heading drifts",
+                tracker=entry.name,
+            ),
         )
     return TrackerSelection(entry.name, (name,), notes)
 
@@ -157,7 +170,24 @@ def _unused(tracker: str, sensors: Sensors, used: tuple[str, ...]) -> tuple[str,
     if not unused:
         return ()
     by = " and ".join(used)
-    return (f"tracker {tracker} tracks by {by}; {' and '.join(unused)} is recorded only",)
+    return (
+        coded(
+            "tracker-unused",
+            "tracker {tracker} tracks by {used}; {unused} is recorded only",
+            tracker=tracker,
+            used=by,
+            unused=" and ".join(unused),
+        ),
+    )
+
+
+def _usual_leg(tracker: str) -> CodedText:
+    return coded(
+        "tracker-usual-leg",
+        "tracker {tracker} takes a usual leg length, as none is set: distances are off by as much "
+        "as that is; give wearer.leg_length_m or wearer.height_m",
+        tracker=tracker,
+    )
 
 
 def _needs_leg_length(entry: MultiSensorTrackerEntry) -> bool:

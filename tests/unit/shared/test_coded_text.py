@@ -10,6 +10,7 @@ from shared.coded_text import (
     code_of_text,
     coded,
     join_texts,
+    text_of_error,
 )
 
 
@@ -38,3 +39,28 @@ def test_joined_texts_keep_the_code_of_a_single_one() -> None:
     assert join_texts((one, "", other)) == "one; other"
     assert code_of_text(join_texts((one, other))) is NO_CODE
     assert join_texts(("", "")) == ""
+
+
+def test_coded_text_within_another_keeps_its_code_and_parameters() -> None:
+    removed = coded("gone", "gone for {away_s:.0f} s ({by})", away_s=3.0, by="mia")
+    text = coded("of", "{device}: {reason}", device="BAT0", reason=removed)
+    assert text == "BAT0: gone for 3 s (mia)"
+    assert code_of_text(text) == TextCode(
+        "of",
+        {
+            "device": "BAT0",
+            "reason": "gone for 3 s (mia)",
+            "reason:": "gone",
+            "reason:by": "mia",
+        },
+        {"reason:away_s": 3.0},
+    )
+    outer = code_of_text(coded("outer", "{fault}", fault=text))
+    assert outer.texts["fault:reason:"] == "gone"
+    assert outer.numbers == {"fault:reason:away_s": 3.0}
+
+
+def test_text_of_an_error_keeps_the_code_with_which_it_was_raised() -> None:
+    error = ValueError(coded("gone", "it is gone"))
+    assert code_of_text(text_of_error(error)).code == "gone"
+    assert text_of_error(KeyError("plain")) == "'plain'"

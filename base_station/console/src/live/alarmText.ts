@@ -40,11 +40,11 @@ function subjectOf({ member, member_before: before }: AlarmParametersView): stri
   return before === null || before === undefined ? name : t("alarm_subject.either", { member: name, before });
 }
 
-/** Of the station by its code; units and their agents report sentences alone. */
+/** By its code; foreign units and those of earlier versions report sentences alone. */
 function faultOf(given: AlarmParametersView): string {
   const { fault, fault_code, fault_texts: texts, fault_numbers: numbers } = given;
   const coded = { code: fault_code ?? "", texts: texts ?? {}, numbers: numbers ?? {} };
-  return codedText("problem", coded, fault ?? "");
+  return codedText(coded, fault ?? "");
 }
 
 function reasonsOf(code: string, reasons: readonly string[]): string {

@@ -1,15 +1,48 @@
 /** Texts by the codes and parameters of the station.  Pure. */
-import { bytes, dateAndTime, duration, minutes, percent } from "../format";
+import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
 import type { PartName } from "../language/catalogue";
-import { knownMessage, t } from "../language/translate";
+import { knownLabel, knownMessage, t } from "../language/translate";
 import type { HealthView, TextCodeView } from "../wire";
 
-/** The text in the chosen language; the station's English one where there is no code, as of an earlier
- * version, or one of another version. */
-export function codedText(part: PartName, coded: TextCodeView | undefined, text: string): string {
+/** The parts that have the texts of the station and of its units; each code is in one of them. */
+const PARTS = ["problem", "unit_fault"] as const satisfies readonly PartName[];
+
+/** The text in the chosen language; the English one where there is no code, as of an earlier version, or one
+ * of another version or of a foreign unit. */
+export function codedText(coded: TextCodeView | undefined, text: string): string {
   if (coded === undefined || coded.code === "") return text;
-  const numbers = Object.entries(coded.numbers).map(([name, value]) => [name, shown(name, value)]);
-  return knownMessage(part, coded.code, { ...coded.texts, ...Object.fromEntries(numbers) }) ?? text;
+  const part = PARTS.find((one) => knownLabel(one, coded.code) !== undefined);
+  if (part === undefined) return text;
+  try {
+    return knownMessage(part, coded.code, valuesOf(coded)) ?? text;
+  } catch {
+    return text; // a unit that is not of this version gave other parameters than the message has
+  }
+}
+
+/** Values of the placeholders; a parameter that is a coded text itself in the chosen language, too. */
+function valuesOf({ texts, numbers }: TextCodeView): Record<string, string | number> {
+  const own = (name: string) => !name.includes(":");
+  return Object.fromEntries([
+    ...Object.entries(texts)
+      .filter(([name]) => own(name))
+      .map(([name, text]) => [name, codedText(codeWithin({ code: "", texts, numbers }, name), text)]),
+    ...Object.entries(numbers)
+      .filter(([name]) => own(name))
+      .map(([name, value]) => [name, shown(name, value)]),
+  ]);
+}
+
+/** The code of a parameter: "reason:" has it, "reason:away_s" a parameter of its own. */
+function codeWithin({ texts, numbers }: TextCodeView, name: string): TextCodeView {
+  const prefix = `${name}:`;
+  const within = <V>(values: Readonly<Record<string, V>>): Record<string, V> =>
+    Object.fromEntries(
+      Object.entries(values)
+        .filter(([one]) => one.startsWith(prefix) && one !== prefix)
+        .map(([one, value]) => [one.slice(prefix.length), value]),
+    );
+  return { code: texts[prefix] ?? "", texts: within(texts), numbers: within(numbers) };
 }
 
 /** A number in the unit that its name ends with; others are written by the message. */
@@ -18,6 +51,7 @@ function shown(name: string, value: number): string | number {
   if (name.endsWith("_s")) return duration(value * 1000);
   if (name.endsWith("_mb")) return bytes(value * 1e6);
   if (name.endsWith("_fraction")) return percent(value);
+  if (name.endsWith("_degc")) return temperature(value);
   return name === "minutes" ? minutes(value * 60_000) : value;
 }
 
@@ -26,7 +60,7 @@ export function problemTexts(view: {
   problems: readonly string[];
   problem_codes?: readonly TextCodeView[];
 }): string[] {
-  return view.problems.map((text, index) => codedText("problem", view.problem_codes?.[index], text));
+  return view.problems.map((text, index) => codedText(view.problem_codes?.[index], text));
 }
 
 /** What is wrong with the station, sentence by sentence. */

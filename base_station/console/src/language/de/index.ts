@@ -27,6 +27,7 @@ import { route } from "./rescue";
 import { people_list, person, people_import, par, rescue } from "./roster";
 import { crew, enrolment, draft, erase } from "./setup";
 import { station, forwarder, health, connection, systems, archive } from "./station";
+import { unit_fault } from "./unit_faults";
 import { sound, standby, away, waiting, wall } from "./stations";
 
 export const de: Catalogue = {
@@ -118,6 +119,7 @@ export const de: Catalogue = {
   systems,
   archive,
   timeline,
+  unit_fault,
   token,
   tracker,
   tracker_reason,

@@ -12,6 +12,8 @@ from base_station.core.checkpoint import read_checkpoint
 from base_station.core.pipeline import StationPipeline
 from base_station.core.state import UnitState
 from base_station.fusion import FUSERS
+from edge.fault_texts import fault_of
+from shared.coded_text import coded
 from shared.messages import AlarmState, EventKind, Message
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -42,6 +44,24 @@ def test_sensor_fault_is_an_alarm_with_the_units_text_until_acknowledged(
     script.event(U, EventKind.STORAGE_FAULT)
     assert script.alarms[-1].text == "unit FF-01's unit: storage fault"
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED", "RAISED"]
+
+
+def test_code_of_a_units_fault_goes_with_its_alarm(script: Script) -> None:
+    fault = fault_of("BAT0", coded("reading-hangs", "no reading for {silent_s:.0f} s", silent_s=6))
+    script.event(U, EventKind.SENSOR_FAULT, fault)
+    (alarm,) = script.alarms
+    assert alarm.text == "unit FF-01's unit: BAT0: no reading for 6 s"
+    given = alarm.parameters
+    assert (given.member, given.fault) == ("unit FF-01", "BAT0: no reading for 6 s")
+    assert given.fault_code == "fault-of"
+    assert given.fault_texts["fault:"] == "reading-hangs"
+    assert given.fault_numbers == {"fault:silent_s": 6.0}
+
+
+def test_fault_of_a_foreign_unit_is_an_alarm_with_its_text_alone(script: Script) -> None:
+    script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
+    given = script.alarms[-1].parameters
+    assert (given.fault, given.fault_code) == ("the accelerometer is stuck", None)
 
 
 def fault_texts(script: Script) -> set[str]:
