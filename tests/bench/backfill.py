@@ -139,7 +139,7 @@ def _fetch(
 
 
 def _coming(others: Sequence[BenchUnit], console: Console, known: int) -> Iterator[int]:
-    """How many fetched messages the console knows of, again and again while others speak; ends
+    """Numbers of fetched messages that the console has, polled during live traffic; ends
     where no more come.  ``known``: of all that it knew before, those that the others had not said.
     """
     fetched, came_s = 0, time.perf_counter()
@@ -228,7 +228,7 @@ class _Backlog:
 
 
 def _fetched(log: Path, began_ns: int) -> tuple[int, float]:
-    """How many fetched messages the log has, and how long after that the last of them came."""
+    """Number of fetched messages in the log, and the time until the last of them."""
     suffixes = {channel.suffix for channel in CHANNELS if channel.direction is Direction.UP}
     keys = {backfilled_key(_BACKLOG_UNIT, suffix) for suffix in suffixes}
     times_ns = [t_ns for t_ns, _, _ in read_log(log, keys=keys)]

@@ -87,7 +87,7 @@ def wearable(station: StationProcess) -> Iterator[Wearable]:
 
 @pytest.fixture(scope="module")
 def complaints(page: Page) -> Iterator[list[str]]:
-    """What the browser complained of: broken scripts, and what the content policy refused.
+    """Errors in the browser: broken scripts, and refusals of the content policy.
 
     At the end there must be none that a test did not expect, and take out.
     """
@@ -114,7 +114,7 @@ def only_the_station(page: Page, station: StationProcess) -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def card(page: Page, complaints: list[str], only_the_station: None, wearable: Wearable) -> Locator:
-    """Of a responder who was enlisted through the page while the unit was sending already."""
+    """Card of a responder who was added through the page while the unit was already sending."""
     card = page.locator(f"[data-unit='{UNIT}']")
     card.wait_for()
     enlist(page, card, UNIT)

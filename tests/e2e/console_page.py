@@ -77,7 +77,7 @@ def metres_north(card: Locator) -> float:
 
 
 def barriers(page: Page) -> list[tuple[str, list[str]]]:
-    """What keeps somebody from using what is shown, as axe-core finds it."""
+    """Accessibility violations of the page, by axe-core."""
     if not AXE.is_file():
         pytest.skip(f"axe-core is not installed: run npm ci in {CONSOLE}")
     page.wait_for_timeout(300)
@@ -87,7 +87,7 @@ def barriers(page: Page) -> list[tuple[str, list[str]]]:
 
 
 def answer_to(page: Page, path: str) -> Any:
-    """What the station answers to who is logged in."""
+    """Answer of the station to the logged-in user."""
     return page.evaluate(f"fetch('/api/v1/{path}').then((answer) => answer.json())")
 
 
@@ -144,7 +144,7 @@ def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, 
 
 
 def painted(page: Page, colour: str) -> int:
-    """How many points of the plan are of a colour of the theme."""
+    """Number of pixels of the plan of a colour of the theme."""
     count: int = page.evaluate(
         """(name) => {
           const said = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -165,7 +165,7 @@ def painted(page: Page, colour: str) -> int:
 
 
 def painted_at_edges(page: Page, colour: str) -> dict[str, int]:
-    """How many points of a colour lie in the outermost pixels of the plan, by side."""
+    """Number of pixels of a colour at the edges of the plan, by side."""
     found: dict[str, int] = page.evaluate(
         """(name) => {
           const said = getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -97,7 +97,7 @@ class PlayedStation:
             socket.send(text)
 
     def show_trail(self, trail: Trail) -> None:
-        """Of a unit, now and with every picture that is asked for."""
+        """Shows the trail of a unit, now and with every requested snapshot."""
         self._trails[trail.unit_id] = trail
         for socket in self._sockets:
             self._show(socket)
@@ -184,12 +184,12 @@ class PlayedStation:
 
 
 def _is_request(message: str | bytes) -> bool:
-    """Of the picture; what a page confirms is of no use here."""
+    """True for a request of a snapshot; confirmations of the page are ignored."""
     return bool(json.loads(message)["type"] == "snapshot")
 
 
 def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str, object]:
-    """What the console asks for at its beginning and in its dialogs."""
+    """Answers to the console's requests at its start and in its dialogs."""
     return {
         "/me": {"username": "chief", "role": role},
         "/site/base-map": None,

@@ -20,7 +20,7 @@ STAYS = ("Evacuate", "PAR", "Message")
 
 
 def places(page: Page) -> dict[str, object]:
-    """Where things stand that are pressed in haste, once the page stands and hears its station.
+    """Positions of the urgent controls, once the page is complete and connected.
 
     A busy machine may keep the page waiting for so long that it counts the station as lost for a
     moment, and then a frame around everything moves all by its width.

@@ -21,7 +21,7 @@ FAINT = 24  # of 255: what smoothing of letters may leave of another colour
 
 
 def greens_and_blues(picture: bytes) -> int:
-    """How many points of a picture have light that is not red."""
+    """Number of pixels of a picture with green or blue light."""
     points = np.asarray(Image.open(io.BytesIO(picture)).convert("RGB"))
     return int((points[..., 1:].max(axis=2) > FAINT).sum())
 

@@ -26,7 +26,7 @@ TABS = 80  # more than any of these dialogs has to go to
 
 
 def entry(page: Page, name: str) -> Locator:
-    """Of the menu."""
+    """Entry of the menu."""
     return page.get_by_role("navigation").get_by_role("button", name=name)
 
 

@@ -47,7 +47,7 @@ def test_failure_of_a_dialog_is_shown_in_it(stage: Stage) -> None:
 
 
 def test_refused_photo_does_not_add_the_person_twice(stage: Stage, tmp_path: Path) -> None:
-    """Who adds a person and is told that the photo is none may press again."""
+    """A user may press again after the refusal of the photo."""
     page, _ = stage.open(scenes.quiet())
     added = {**scenes.PEOPLE[0], "person_id": "new"}
     page.route(

@@ -58,7 +58,7 @@ def enrol(dialog: Locator) -> Locator:
 
 
 def scanned(page: Page) -> str:
-    """What a camera reads off the screen."""
+    """Text of the code as a camera reads it off the screen."""
     (code,) = zxingcpp.read_barcodes(Image.open(io.BytesIO(page.screenshot())).convert("L"))
     return str(code.text)
 

@@ -67,5 +67,5 @@ def test_html_in_a_name_is_shown_as_text(stage: Stage) -> None:
 
 
 def sprung(page: Page) -> tuple[object, int]:
-    """What a trap has done, and how many became elements."""
+    """Effect of the injected script, and the number of injected elements."""
     return page.evaluate("window.sprung ?? null"), page.locator("img[src='x']").count()

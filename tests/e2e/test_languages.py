@@ -72,7 +72,7 @@ def english_on(page: Page, language: str) -> set[str]:
 
 
 def open_dialogs(page: Page) -> list[Locator]:
-    """What opens a dialog of the main screen, whatever its words: orders and the menu's entries."""
+    """Buttons that open dialogs of the main screen, in any language: orders and menu entries."""
     orders = page.locator(".command-bar > button")
     entries = page.locator("#menu button")
     return [*orders.all(), *entries.all()]

@@ -15,7 +15,7 @@ from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
 
 
 def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, list[str]]:
-    """What is wrong, by screen; screens on which nothing is are left out."""
+    """Layout errors by screen; screens without errors are left out."""
     found = {}
     for name, (width, height) in SCREENS.items():
         page.set_viewport_size({"width": width, "height": height})
@@ -130,7 +130,7 @@ def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
 
 
 def test_dialogs_fit_the_width_of_a_phone(stage: Stage) -> None:
-    """Who has one hand does not look for a button to the right of the screen."""
+    """Controls to the right of the screen are out of reach with one hand."""
     page, _ = stage.open(scenes.bad_minute(), "phone")
     for name in ("Incidents", "Units", "People"):
         page.get_by_role("button", name="Menu").click()

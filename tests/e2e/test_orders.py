@@ -22,7 +22,7 @@ def with_orders(*orders: CommandView, shown: Snapshot | None = None) -> Snapshot
 
 
 def captions(page: Page, order: str) -> list[str]:
-    """Of the orders that the dialog lists."""
+    """Captions of the orders in the dialog."""
     dialog = command(page, order)
     found = [text.partition(" (")[0] for text in dialog.locator("caption").all_inner_texts()]
     page.keyboard.press("Escape")

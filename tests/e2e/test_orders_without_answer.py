@@ -1,4 +1,4 @@
-"""What had no answer is followed up once the station is heard: the notice says what came of it."""
+"""Orders without an answer: once the station is received again the notice shows the outcome."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def pin_panel(page: Page) -> Locator:
 
 
 def moved(page: Page, panel: Locator) -> dict[str, Any]:
-    """What the station is told."""
+    """Request to the station after a move."""
     with page.expect_request(is_move) as asked:
         panel.get_by_role("button", name="Move pin", exact=True).click()
     page.keyboard.press("Escape")

@@ -48,7 +48,7 @@ def received(one: UnitView) -> UnitView:
 
 
 def test_double_press_confirms_one_member(stage: Stage) -> None:
-    """Who was ticked off goes down, and the next one comes to that place."""
+    """A confirmed member moves down the list, and the next one moves to that place."""
     first, second, third = (scenes.person(index).name for index in (0, 10, 5))
     crew = [scenes.unit(index) for index in (0, 5, 10)]
     page, station = stage.open(scenes.picture(crew))
@@ -96,7 +96,7 @@ def test_double_press_sends_one_order(stage: Stage, order: str, sends: str) -> N
 
 @pytest.mark.parametrize("order", ["Message", "Evacuate"])
 def test_next_order_keeps_its_target(stage: Stage, order: str) -> None:
-    """Who presses again because nobody answers must not call all others out."""
+    """A repeated order for lack of an answer must not go to everyone."""
     sent = {"POST /commands": {"command_id": "c9"}}
     page, _ = stage.open(scenes.quiet(), answers={**ANSWERS, **sent})
     page.get_by_role("group", name="Commands").get_by_role("button", name=order).click()
@@ -163,7 +163,7 @@ def test_double_press_sets_one_pin_and_adds_one_person(stage: Stage) -> None:
 
 
 def test_double_press_acknowledges_the_alarms_of_one_member(stage: Stage) -> None:
-    """What is over goes away, and the next member's alarm would never be seen."""
+    """The acknowledged row disappears; the next member's alarm must not be acknowledged unseen."""
     page, station = stage.open(scenes.bad_minute())
     fall, still, heat, _ = scenes.bad_minute().alarms
     rows = page.get_by_role("region", name="Open alarms").get_by_role("listitem")

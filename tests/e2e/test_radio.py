@@ -91,7 +91,7 @@ def show(station: PlayedStation, at_ms: int, *, speed: float, playing: bool) -> 
 
 
 def place_ms(page: Page) -> float:
-    """Of the sound, on the clock of the incident."""
+    """Position of the audio, on the clock of the incident."""
     return float(
         player(page)
         .locator("audio")

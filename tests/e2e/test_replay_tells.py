@@ -74,7 +74,7 @@ def test_replay_station_shows_no_past_alarm_as_live(
 
 
 def test_replay_does_not_show_the_stations_health(stage: Stage) -> None:
-    """What was measured of the machine is no part of the past; what is wrong now is said beside."""
+    """Measurements of the machine are not replayed; current problems are shown beside it."""
     health = msgspec.structs.replace(scenes.HEALTH, problems=("only 700 MB are free", "b"))
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), health=health))
     light = page.get_by_role("button", name="Station health")
@@ -170,7 +170,7 @@ def test_times_of_another_day_show_date_and_time_zone(
 def test_second_replay_at_a_replay_station_shows_no_live_banner(
     stage: Stage,
 ) -> None:
-    """What is beside it is the past too, and nobody gets out of that without a banner."""
+    """The picture behind it is a replay too, so the banner must stay."""
     page, station = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")
     expect(bar).to_contain_text("Recorded, not live")

@@ -20,7 +20,7 @@ def switch(page: Page) -> Locator:
 
 
 def names(page: Page) -> set[str]:
-    """Of who is listed, but for those of no incident."""
+    """Names of the listed members, except those of no incident."""
     return set(page.locator(".people-list > .cards .name").all_text_contents())
 
 

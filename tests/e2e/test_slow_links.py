@@ -69,7 +69,7 @@ def test_failure_of_a_list_disappears_when_the_station_returns(stage: Stage) -> 
 
 
 def test_unknown_outcome_of_an_order_stays_shown(stage: Stage) -> None:
-    """Who orders an evacuation and looks away must find out that it may not have gone out."""
+    """A user who looks away must find out that an evacuation may not have been sent."""
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/commands", lambda route: route.abort())
     page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()

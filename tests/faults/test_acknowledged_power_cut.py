@@ -36,7 +36,7 @@ MakePosition = Callable[..., Position]
 
 
 class Disk:
-    """What of each file a power cut would leave: what it was asked to keep, and has kept."""
+    """Contents of each file after a power cut: the part that was synced."""
 
     def __init__(self) -> None:
         self._fsync = os.fsync

@@ -21,7 +21,7 @@ EVERY_S = 0.8
 
 
 class Disk:
-    """What a power cut would leave: of each file, and which names, it was asked to keep."""
+    """Contents of a disk after a power cut: the synced parts of files, and the synced names."""
 
     def __init__(self) -> None:
         self._fsync = os.fsync

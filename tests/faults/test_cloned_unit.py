@@ -138,7 +138,7 @@ def test_repeatedly_restarted_unit_is_one_device(script: Script) -> None:
 
 
 def test_late_messages_of_the_previous_boot_are_no_second_device(script: Script) -> None:
-    """What a dying link had queued comes after the first messages of the next boot."""
+    """Messages queued in a failing link arrive after the first ones of the next boot."""
     before = Machine(script, 1, 0.0)
     for _ in range(20):
         before.walk(1.0)

@@ -45,7 +45,7 @@ class Bus:
         self.link_s()  # what is made once is not measured
 
     def link_s(self) -> float:
-        """How long it takes a unit to link and to be heard."""
+        """Time until a unit is linked and received."""
         began_s = time.monotonic()
         with closing(unit(self.anna)) as bus:
             until(lambda: bus.has_subscriber(KEY), "the link")
@@ -98,7 +98,7 @@ def test_links_return_at_once_after_an_enrolment_during_a_flood(bus: Bus) -> Non
 
 
 def next_outage_s(anna: ZenohBus) -> float:
-    """How long the link is lost, once it is."""
+    """Duration of the next loss of the link."""
     until(lambda: not anna.has_subscriber(KEY), "the router opens again", look_every_s=0.002)
     closed_s = time.monotonic()
     until(lambda: anna.has_subscriber(KEY), "the link is back")

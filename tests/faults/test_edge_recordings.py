@@ -47,7 +47,7 @@ class Nobody:
 
 
 def run_agent_on(rows: np.ndarray, folder: Path):
-    """What an agent sends when it plays these rows: positions, statuses, events."""
+    """Messages of an agent that plays these rows: positions, statuses, events."""
     recording = folder / "walk"
     recording.mkdir()
     (recording / "trial.json").write_text('{"rate_hz": 200.0, "gyro_full_scale_dps": 2000.0}')

@@ -117,7 +117,7 @@ def running(tmp_path):
 
 
 def set_room(running: Running, pages: int) -> None:
-    """How large the journal's file can become, as a disk would limit it."""
+    """Limits the size of the journal's file, like a full disk."""
     journal = running.parts.journal
     with journal._lock:
         journal._writer.execute(f"PRAGMA max_page_count = {pages}")

@@ -41,7 +41,7 @@ NOISE = np.random.default_rng(2).bytes(3000)
 
 
 class Heard:
-    """What a unit takes of a receiver."""
+    """Fixes and faults that a unit takes from a receiver."""
 
     def __init__(self, text: str, hasty: bool) -> None:
         self.reader: GnssReader = open_receiver(text, Hasty() if hasty else SystemClock())

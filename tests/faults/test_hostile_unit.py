@@ -205,7 +205,7 @@ def test_large_messages_of_a_journal_are_limited_and_reported(
 
 
 def delays_s(scene: Scene, since_ns: int) -> list[float]:
-    """Of the others' positions, from when they were sent until they were logged."""
+    """Delays of the others' positions, from their sending to the log."""
     return [
         (t_ns - message.header.t_utc_ns) / NS_PER_S
         for t_ns, key, payload in read_log(scene.station.log, start_ns=since_ns)
@@ -246,6 +246,6 @@ def toggle(bus: ZenohBus, over: Event) -> None:
 
 
 def logged(scene: Scene) -> list[int]:
-    """How many messages of each of the others are in the log."""
+    """Number of messages of each of the others in the log."""
     senders = [parse_key(key)[0] for _, key, _ in read_log(scene.station.log) if "/up/" in key]
     return [senders.count(unit.unit_id) for unit in scene.units]

@@ -248,7 +248,7 @@ def register_many(station: LiveStation) -> None:
 
 
 def until_it_refuses(station: LiveStation) -> None:
-    """Of what nobody can read, which is logged too, so much that memory is full."""
+    """Publishes unreadable messages, which are logged too, until memory is full."""
     while not station.recorder.refuses:
         station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
         time.sleep(0.1)
@@ -281,7 +281,7 @@ def test_checkpoint_that_cannot_be_saved_leaves_no_temporary_file(tmp_path: Path
 def test_full_disk_is_reported_also_after_a_nearly_full_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Who was told that there is little room, and can wait with that, must hear of the rest."""
+    """A user who ignores the warning of little room must be notified of the full disk."""
     monkeypatch.setattr("base_station.storage.recorder._LITTLE_FREE_BYTES", 1 << 62)
     with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
 

@@ -38,7 +38,7 @@ def took_s(ask: Callable[[], object]) -> float:
 
 
 def asked_times_s(console: Browser) -> list[float]:
-    """Of evacuations and of looks at the station's health."""
+    """Response times of evacuations and of requests of the station's health."""
     evacuation = {"kind": "evacuate", "target": {"unit_id": "FF-01"}, "expires_s": 1.0}
     asked = [
         took_s(lambda: console.call("POST", "/commands", json=evacuation)) for _ in range(ASKED)

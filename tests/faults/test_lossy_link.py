@@ -32,7 +32,7 @@ class Datagrams:
         self._receiver.bind((link.station.address, PORT))
 
     def arrived(self, count: int, size: int = 4, quiet_s: float = 0.6) -> list[int]:
-        """Of ``count`` sent now, the numbers in the order in which they come."""
+        """Numbers of ``count`` datagrams sent now, in the order of their arrival."""
         numbers: list[int] = []
         self._receiver.settimeout(0.001)
         for number in range(count):

@@ -40,7 +40,7 @@ class Wearable:
             self._agent.kill()
 
     def journalled(self) -> set[Message]:
-        """What the agent has ever said, by its journal."""
+        """All messages of the agent, by its journal."""
         with closing(sqlite3.connect(f"file:{self._journal}?mode=ro", uri=True)) as journal:
             rows = journal.execute(
                 "SELECT boot_id, seq FROM message JOIN boot ON boot.number = message.boot"
@@ -49,7 +49,7 @@ class Wearable:
 
 
 def logged(data: Path) -> tuple[Counter[Message], int]:
-    """How often the log has each of the unit's messages, and how many came from its journal."""
+    """Count in the log of each of the unit's messages, and the number fetched from its journal."""
     messages: Counter[Message] = Counter()
     fetched = 0
     for _, key, payload in read_log(data / "log"):

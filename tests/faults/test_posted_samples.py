@@ -93,7 +93,7 @@ def track(station: StationProcess) -> list[dict[str, Any]]:
 
 
 def moved_m(points: list[dict[str, Any]]) -> float:
-    """How far from where it was seen first."""
+    """Distance from the first position."""
     places = [(point["north_m"], point["east_m"]) for point in points]
     return max((dist(places[0], place) for place in places), default=0.0)
 
@@ -137,5 +137,5 @@ def agent_output(folder: Path) -> str:
 
 
 def logged_samples(log: Path) -> Counter[bytes]:
-    """How often the log has each message of raw samples."""
+    """Count in the log of each message of raw samples."""
     return Counter(payload for _, key, payload in read_log(log) if parse_key(key) == (U, IMU))

@@ -164,7 +164,7 @@ def test_complete_file_is_kept_after_the_unit_deletes_it(
 
 
 def _step_to(fetch: Transfer, unit: RecordedUnit, what: str) -> bool:
-    """Whether the next question is of that kind for the first time."""
+    """True if the next query is the first of that kind."""
     fetch.step()
     part = next(iter(fetch.folder.rglob("*.mcap.part")), None)
     size = part.stat().st_size if part is not None else -1

@@ -29,7 +29,7 @@ def test_time_for_other_units_does_not_reduce_the_piece_size(
 
 
 def test_piece_size_follows_a_thinner_link(tmp_path: Path) -> None:
-    """What it cannot carry in time is not asked for again and again."""
+    """Pieces too large for the link are not requested repeatedly."""
     content = random.Random(1).randbytes(300_000)
     unit, carried_bytes = TellingUnit(a=content), len(content)
 

@@ -87,7 +87,7 @@ def test_revoked_unit_is_disconnected_and_the_other_loses_nothing(
 
 
 def logged(log: Path) -> dict[str, Counter[MessageOfUnit]]:
-    """How often the log has each message of each unit."""
+    """Count in the log of each message of each unit."""
     messages: dict[str, Counter[MessageOfUnit]] = {}
     for _, key, payload in read_log(log):
         unit_id, channel = parse_key(key)

@@ -55,7 +55,7 @@ def test_exceeded_full_scale_is_discarded():
 
 
 def test_mostly_clipped_gyroscope_has_a_bounded_uncertainty():
-    """What a rest shows of its bias then differs from sample to sample."""
+    """The bias observed at rest then differs from sample to sample."""
     t_ns, accel, gyro = copy()
     rows = run(t_ns, accel, np.clip(gyro, -1.5, 1.5))  # too slow to be taken for a full scale
     assert np.sqrt(rows.position_cov_m2[-1, 0, 0]) < 100.0  # after 17 s; once infinite

@@ -62,7 +62,7 @@ def evacuate(station: Station, key: str) -> str:
 
 
 def fill_journal(folder: Path, unit_id: str) -> None:
-    """What a unit has said in an hour without a station."""
+    """Fills the journal with messages of an hour without a station."""
     folder.mkdir(parents=True)
     journal = Journal(folder / "journal.sqlite", lambda: OLD_BOOT, time.time_ns(), 10**9)
     for first in range(1, BACKLOG, 1000):
@@ -76,7 +76,7 @@ def fill_journal(folder: Path, unit_id: str) -> None:
 
 
 def count_old(station: Station) -> int:
-    """How much of that is in a station's log."""
+    """Number of those messages in a station's log."""
     return sum(boot_id == OLD_BOOT for _, boot_id, _ in station.logged().messages)
 
 

@@ -32,7 +32,7 @@ REPORTED_S = 3.0  # a beat that names a new unit
 
 
 class People:
-    """What each user has at each station: a login of its own, and a token of the first one's."""
+    """Access of each user at each station: a login of its own, and a token of the first one's."""
 
     def __init__(self, at: Station) -> None:
         self.tokens: dict[str, tuple[str, str]] = {}  # id and secret

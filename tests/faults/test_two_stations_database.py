@@ -21,7 +21,7 @@ USER, PASSWORD = "mia", "correct horse battery"
 
 
 def has_all(at: Station) -> bool:
-    """Whether the administrator of both, and the user, log in here and find what was entered."""
+    """True if administrator and user can log in here and find the entered data."""
     try:
         found = call(at, as_admin(at), "GET", "/people")
         return [one["name"] for one in found] == ["Ada"] and (

@@ -36,7 +36,7 @@ def record_incident(at: Station) -> tuple[str, str]:
 
 
 def shown(at: Station) -> dict[str, Any]:
-    """What a console sees that must not change with the station that leads."""
+    """Picture of a console that must not change with the leading station."""
     api = at.logged_in()
     headers = {"Cookie": api.cookie, "Origin": api.origin}
     with connect(api.live_url, additional_headers=headers, max_size=None) as socket:

@@ -17,7 +17,7 @@ class Figure:
     rounding: float
 
     def holds(self, measured: float) -> bool:
-        """Whether ``measured`` rounds to it; a tenth of a unit is left to other processors."""
+        """True if ``measured`` rounds to it; a tenth of a unit is left to other processors."""
         return abs(measured - self.value) <= 1.2 * self.rounding
 
 

@@ -49,7 +49,7 @@ def client_at(station: DeskStation, address: str) -> httpx.AsyncClient:
 
 
 def scanned(rows: list[str]) -> str:
-    """What a camera reads of the code, drawn as the console draws it."""
+    """Text of the code as a camera reads it, drawn as by the console."""
     picture = Image.new("L", (len(rows) + 8, len(rows) + 8), 255)
     for y, row in enumerate(rows):
         for x, module in enumerate(row):

@@ -57,7 +57,7 @@ async def test_unhandled_error_is_answered_as_a_problem(
 async def test_timeout_states_that_the_action_may_still_be_done(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Who is told to try again opens two."""
+    """A user who simply repeats the request could open two incidents."""
     waiting: Future[ActionResult] = Future()
     monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
     monkeypatch.setattr(station.drive, "submit", lambda *_: waiting)

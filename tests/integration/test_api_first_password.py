@@ -25,7 +25,7 @@ def first(station: DeskStation) -> DeskStation:
 
 
 async def log_in(client: httpx.AsyncClient, password: str = GENERATED) -> bool:
-    """Whether the password must be changed."""
+    """Logs in; true if the password must be changed."""
     client.headers["origin"] = ORIGIN
     answer = await client.post("/login", json=LOGIN | {"password": password})
     assert answer.status_code == 200, answer.text

@@ -71,7 +71,7 @@ async def node(station: DeskStation, browser: httpx.AsyncClient) -> httpx.AsyncC
 
 @pytest.fixture
 def received(station: DeskStation) -> Heard:
-    """What a tracking agent is given."""
+    """Messages that a tracking agent receives."""
     received = Heard()
     bus = station.router.attach_station()
     for channel in (IMU, DESCRIPTION):

@@ -135,7 +135,7 @@ def test_message_above_the_size_of_units_is_dropped_by_the_router(
 
 
 def sizes_received(address: str, key: str, sizes: Sequence[int]) -> list[int]:
-    """What comes through a router of messages of these sizes, the last of which is small."""
+    """Sizes of the messages that pass a router, of these, the last of which is small."""
     received: list[int] = []
     with (
         closing(ZenohBus(StationEndpoint((address,)))),

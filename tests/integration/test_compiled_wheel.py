@@ -57,7 +57,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(*before_the_checkout: Path) -> tuple[int, str]:
-    """How many modules were machine code, and the digest of the incidents."""
+    """Number of compiled modules, and the digest of the incidents."""
     path = os.pathsep.join(map(str, (*before_the_checkout, PROJECT_ROOT)))
     done = subprocess.run(
         [sys.executable, "-P", "-m", "tests.rig.core_run"],

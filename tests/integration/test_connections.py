@@ -152,7 +152,7 @@ async def test_connection_with_a_very_slow_body_is_closed(port: int) -> None:
 async def test_new_connection_is_accepted_when_all_are_taken(
     port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of the place that holds most the oldest is let go; places with a login keep theirs."""
+    """The oldest one of the largest network is closed; networks with a login keep theirs."""
     monkeypatch.setattr(connections, "MAX_ANONYMOUS", 6)
     monkeypatch.setattr(connections, "MAX_PER_ANONYMOUS_NETWORK", 4)
     monkeypatch.setattr(server, "_REQUEST_TIMEOUT_S", 1000.0)

@@ -251,7 +251,7 @@ def test_copy_of_a_constantly_written_database_is_refused(
 
 @pytest.mark.parametrize("name", ["site#1", "what?", "100%41", "?mode=memory"])
 def test_folder_may_have_any_name(tmp_path: Path, clock: ManualClock, name: str) -> None:
-    """What an address would take for something else is a part of the name."""
+    """Characters with a meaning in an address are parts of the name."""
     folder = tmp_path / name
     folder.mkdir()
     with Store(folder / "station.sqlite") as store:

@@ -36,7 +36,7 @@ to = [[25, 0], [25, 25]]
 
 @dataclass(frozen=True)
 class Ran:
-    """What an agent has left behind after its walk, with nobody there to listen."""
+    """Files of an agent after its walk without a station."""
 
     described: UnitDescription  # as it would have gone over the bus
     last: Position

@@ -57,7 +57,7 @@ OneMessage = TypeVar("OneMessage", bound=Message)
 
 
 class Station:
-    """Where the agent's messages go."""
+    """Receiver of the agent's messages."""
 
     def __init__(self) -> None:
         self.messages: list[tuple[int, Message]] = []  # when each came
@@ -81,7 +81,7 @@ class Station:
         return self.of(GpsFix)
 
     def fused(self) -> list[FusedPosition]:
-        """What the station's pipeline makes of everything, as it came."""
+        """Output of the station's pipeline for all messages in the order of their arrival."""
         pipeline = StationPipeline(ALARMS, FUSERS[0])
         began_ns = self.messages[0][0]
         register = OperatorAction(
@@ -191,7 +191,7 @@ def _as_they_were_given(station: Station, given: list[GpsSample]) -> None:
 
 
 def _the_walk_lies_where_they_were(station: Station, given: list[GpsSample]) -> None:
-    """Where nobody has said where the site is, the first fix does."""
+    """The first fix anchors a site without an anchor."""
     fused = station.fused()[-1]
     first, last = given[0], given[-1]
     anchor = Anchor(first.lat_deg, first.lon_deg, first.height_m)

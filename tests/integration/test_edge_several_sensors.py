@@ -34,7 +34,7 @@ def compiled() -> None:
 
 @pytest.fixture
 def messages(port: int) -> Iterator[list[Message]]:
-    """What the unit sends."""
+    """Messages of the unit."""
     received: list[Message] = []
     with closing(ZenohBus(StationEndpoint((f"tcp/127.0.0.1:{port}",)))) as bus:
         bus.subscribe(

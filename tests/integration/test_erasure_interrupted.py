@@ -67,7 +67,7 @@ def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None
 
 
 def forgotten_in_tries(folder: Path, kind: str, subject_id: str, cut_at: Collection[str]) -> str:
-    """What the audit says of it, where the store fails at these steps, each once."""
+    """Audit entry of an erasure whose store fails once at each of these steps."""
     data = DataFolder(folder)
     with Store(data.database) as store:
         records = Records(store, SystemClock())
@@ -120,7 +120,7 @@ def test_erasure_in_several_attempts_equals_one_without_interruption(
 
 
 def begun_in(folder: Path) -> Path:
-    """Who was in an incident that is being forgotten."""
+    """Stored members of an incident whose erasure is unfinished."""
     return folder / "forgetting-begun.json"
 
 

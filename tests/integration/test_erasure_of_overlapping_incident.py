@@ -235,7 +235,7 @@ def test_other_incident_replays_with_the_same_decisions(erased: _Erased) -> None
 
 
 def kept_of(folder: Path, incident_id: str) -> dict[str, object]:
-    """What the tables have of an incident."""
+    """Rows of the tables about an incident."""
     with Store(folder / "station.sqlite") as store:
         records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
         incident = records.require_incident(incident_id)

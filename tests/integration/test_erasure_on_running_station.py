@@ -144,7 +144,7 @@ def test_damaged_segment_is_repaired_from_the_other_station_before_erasure(
 def test_checkpoints_are_removed_after_the_erasure_in_memory(
     tmp_path: Path, reported: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What it saves before that has everything in it."""
+    """A checkpoint saved before still contains everything."""
     data, happened = DataFolder(shutil.copytree(reported, tmp_path / "station")), list[str]()
 
     class Acted(Future[ActionResult]):

@@ -16,7 +16,7 @@ ALONE = ["unshare", "--net", "--map-root-user"]
 
 
 def nft(commands: str) -> str:
-    """What the commands print, one after the other in a new network namespace."""
+    """Output of the commands, run one after the other in a new network namespace."""
     if shutil.which("nft") is None:
         pytest.skip("nft is not installed")
     if subprocess.run([*ALONE, "true"], capture_output=True, check=False).returncode != 0:

@@ -152,7 +152,7 @@ def test_missing_rows_of_a_time_are_projected_again(moved: Path, address: Server
 
 
 def test_erasure_waits_for_the_projection_of_the_log(moved: Path, address: ServerAddress) -> None:
-    """What was read of the log before would be written behind the erasure."""
+    """Rows read from the log before would be written after the erasure."""
     ProjectionMark(moved / "tables-behind").note(1)
     clock = SystemClock()
     with ExitStack() as closing:

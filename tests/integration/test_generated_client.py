@@ -55,7 +55,7 @@ class Generated:
         return module.sync_detailed(*args, **{"client": self.client, **kwargs})
 
     def refused(self, status: int, name: str, *args: Any, **kwargs: Any) -> str:
-        """What is wrong, from the typed problem."""
+        """Detail of the typed problem."""
         answer = self.detailed(name, *args, **kwargs)
         assert answer.status_code == HTTPStatus(status), answer.content
         assert isinstance(answer.parsed, self.models.ProblemDocument)
@@ -64,7 +64,7 @@ class Generated:
 
 
 def generate(document: bytes, folder: Path) -> str:
-    """What the generator had to say."""
+    """Output of the generator."""
     (folder / "openapi.json").write_bytes(document)
     (folder / "settings.json").write_text(json.dumps(SETTINGS))
     done = subprocess.run(

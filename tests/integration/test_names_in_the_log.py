@@ -143,7 +143,7 @@ def _everything_shown(browser: Browser, incident_id: str) -> dict[str, str]:
 
 
 def _replayed(browser: Browser, incident_id: str) -> str:
-    """What a console is shown at the end."""
+    """Picture of a console at the end."""
     replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
     path = f"/replays/{replay['replay_id']}"
     shown: dict[str, Any] = {}

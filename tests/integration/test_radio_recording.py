@@ -58,7 +58,7 @@ def recorded_for(log: RadioLog, from_ns: int, seconds: float) -> bool:
 
 
 def largest_drift_s(log: RadioLog, from_ns: int, until_ns: int) -> float:
-    """Of all onsets in the window from the even second to which each belongs."""
+    """Largest difference of the onsets in the window from their even seconds."""
     from_ns = -(-from_ns // PERIOD_NS) * PERIOD_NS - NS_PER_S
     found = onsets_s(decoded(log.audio(NAME, from_ns, until_ns)), SAMPLE_HZ)
     assert len(found) >= (until_ns - from_ns) // PERIOD_NS - 1
@@ -139,7 +139,7 @@ def test_sound_device_is_recorded_with_correct_times(
 
 
 def test_file_is_repeated_in_real_time(tmp_path: Path) -> None:
-    """Of two seconds, from an even one on: the pattern goes on over the rounds."""
+    """A file of two seconds from an even one on: the pattern continues over the repetitions."""
     path = tmp_path / "exercise.wav"
     with wave.open(str(path), "wb") as file:
         file.setparams((1, 2, SAMPLE_HZ, 0, "NONE", ""))

@@ -291,7 +291,7 @@ async def no_page(_scope: Scope, _receive: Receive, _send: Send) -> None:
 
 
 def first_words() -> bytes:
-    """Of a client that greets over TLS."""
+    """First bytes of a TLS client."""
     stated, context = MemoryBIO(), SSLContext(PROTOCOL_TLS_CLIENT)
     with pytest.raises(SSLWantReadError):
         context.wrap_bio(MemoryBIO(), stated, server_hostname="x").do_handshake()

@@ -39,7 +39,7 @@ BATCHES = 800  # of the walk, 50 ms each
 
 
 def batches(one_by_one: bool = False) -> Iterator[SensorBatch]:
-    """What a unit's pipeline gets: rounded as the wire does."""
+    """Samples of a unit's pipeline, rounded as on the wire."""
     raw = SampleEncoder(U, 1)
     for batch in islice(open_source(WALK).batches(), BATCHES):
         if not one_by_one:
@@ -96,7 +96,7 @@ class Air:
         self._unit.serve(server.key_expression, server.replies)
 
     def track(self) -> list[Position]:
-        """What the agent computes for one run of the unit that has ended."""
+        """Positions of the agent for one ended run of the unit."""
         self.source = source = BusSource(U)
         assert source.follow(self.listener, Event())
         agent = pipeline(tracker_id(U), "eskf", boot_id=9, sensor=source.description)

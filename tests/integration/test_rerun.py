@@ -92,7 +92,7 @@ def test_interrupted_rerun_continues_from_finished_parts(
 
 
 def test_late_recording_continues_the_recorded_path(given: Given, tmp_path: Path) -> None:
-    """Of what a station pulls, the begin of the boot is often not there."""
+    """Pulled recordings often lack the start of the boot."""
     late = tmp_path / "FF-01" / "boot"
     shutil.copytree(given.boot("FF-01"), late)
     (only,) = segment_paths(late)

@@ -16,7 +16,7 @@ from tests.rig.waiting import until
 
 
 def set_in(browser: Browser) -> list[dict[str, Any]]:
-    """What the audit has of thresholds, oldest first."""
+    """Audit entries of thresholds, oldest first."""
     entries = browser.call("GET", "/audit")
     reported = [json.loads(one["detail"]) for one in entries if one["action"] == "SetThresholds"]
     return reported[::-1]

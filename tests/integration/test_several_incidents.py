@@ -68,7 +68,7 @@ def report(browser: Browser, incident_id: str) -> str:
 
 
 def erase(browser: Browser, incident_id: str, name: str) -> str:
-    """What the station says of the erasure when it is done."""
+    """Result of a completed erasure."""
     asked = browser.call("POST", f"/incidents/{incident_id}/forget", json={"name": name})
 
     def job() -> dict[str, Any]:
@@ -82,7 +82,7 @@ def erase(browser: Browser, incident_id: str, name: str) -> str:
 
 
 def replayed(browser: Browser, incident_id: str) -> dict[str, Any]:
-    """What the replay of an incident shows at its end."""
+    """Picture at the end of the replay of an incident."""
     replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
     path = f"/replays/{replay['replay_id']}"
     end_ms = replay["end_ms"] - 1

@@ -45,7 +45,7 @@ class Station:
             self.clock.advance(0.5)
 
     def lost(self) -> dict[str, AlarmState]:
-        """Of whom there is or was an alarm."""
+        """States of the alarms of lost links, by unit."""
         alarms = self.pipeline.state.alarms.values()
         return {one.unit_id: one.state for one in alarms if one.rule == "link-lost"}
 

@@ -79,7 +79,7 @@ def received(station: LiveStation, backfill: Backfill, rounds: int) -> None:
 
 
 def kept(station: LiveStation, unit: Unit) -> list[int]:
-    """How often each of the journal's entries is in the log."""
+    """Count in the log of each of the journal's entries."""
     counts = Counter(payload for _, _, payload in station.log.records())
     return [counts[payload] for payload in unit.kept]
 

@@ -1,1 +1,1 @@
-"""What benchmarks, and tests, drive a real station with: processes, units, consoles, bad links."""
+"""Tools of benchmarks and tests for a real station: processes, units, consoles, bad links."""

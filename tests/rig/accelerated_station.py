@@ -118,7 +118,7 @@ class CompressedStation:
         return self._drive.submit(STATION_ID, action).result(_PATIENCE_S)
 
     def cpu_s(self) -> dict[str, float]:
-        """Of each part since it began, without what making the messages took."""
+        """Processor time of each part since the start, without that of the simulation."""
         spent = {
             _PARTS[thread.name]: time.clock_gettime(time.pthread_getcpuclockid(thread.ident))
             for thread in threading.enumerate()

@@ -28,7 +28,7 @@ def assert_nothing_is_lost(site: Site, fault: BadLink, patience_s: float) -> Non
 
 
 def _assert_alerts_come_first(site: Site, before: set[MessageOfUnit]) -> None:
-    """Of what was fetched."""
+    """Asserts that alerts were fetched first."""
     fetched = [one for one in site.logged() if not one.live and one.message not in before]
     assert len(fetched) > 20
     alerts = [number for number, one in enumerate(fetched) if one.alert]

@@ -50,7 +50,7 @@ class TellingUnit:
 
 
 def pulled(folder: Path) -> dict[str, bytes]:
-    """What is there of it, by name."""
+    """Pulled files by name."""
     return {one.name: one.read_bytes() for one in (folder / U / "boot").iterdir()}
 
 

@@ -65,7 +65,7 @@ class Api:
             return json.loads(answer.read() or b"null")
 
     def post(self, path: str, body: dict[str, Any]) -> Any:
-        """What is answered; None where that is empty."""
+        """Answer of the station; None if it is empty."""
         with self._open("POST", path, body, self.cookie) as answer:
             return json.loads(answer.read() or b"null")
 

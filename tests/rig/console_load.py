@@ -27,7 +27,7 @@ _SNAPSHOT = b'{"type":"snapshot"'
 
 
 class Seen(NamedTuple):
-    """What onlookers of one kind got, the one that got least, and all together."""
+    """Traffic to consoles of one kind: of the one that got least, and in total."""
 
     onlookers: int
     least_messages: int
@@ -46,7 +46,7 @@ class Onlookers:
         self._thread.start()
 
     def close(self) -> tuple[Seen, Seen]:
-        """What the quick ones saw, and the slow ones."""
+        """Closes all; traffic to the quick ones and to the slow ones."""
         self._closing.set()
         self._thread.join()
         for one in (*self._quick, *self._slow):

@@ -99,7 +99,7 @@ def department_types() -> str:
 
 
 def _declarations(module: ModuleType) -> list[str]:
-    """Of its public structs."""
+    """Declarations of its public structs."""
     structs = [
         item
         for item in vars(module).values()

@@ -11,7 +11,7 @@ from importlib.machinery import ExtensionFileLoader
 
 
 def digest() -> str:
-    """Of all decisions, of the state that is saved, and of what consoles are shown."""
+    """Digest of all decisions, of the saved state and of the picture of consoles."""
     from base_station.storage.db.known_people import person_lookup  # noqa: PLC0415
     from base_station.views.station import StationFacts, snapshot  # noqa: PLC0415
     from tests.golden import test_pins_replay, test_replay_equals_live  # noqa: PLC0415

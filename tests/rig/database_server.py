@@ -128,7 +128,7 @@ class DatabaseServer:
 
     @property
     def printed(self) -> str:
-        """What the server has logged, with every statement."""
+        """Log of the server, with every statement."""
         return (self._folder / "postgres.txt").read_text(errors="replace")
 
     def _takes_connections(self) -> bool:

@@ -49,7 +49,7 @@ class DepartmentSite:
         self._open.close()
 
     def forwarder(self, enrolment: Enrolment, data: Path) -> DepartmentForwarder:
-        """Of a station whose folder is ``data``."""
+        """Forwarder of a station whose folder is ``data``."""
         data.mkdir(exist_ok=True)
         file = data / "enrolment.toml"
         if not file.exists():

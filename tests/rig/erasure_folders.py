@@ -28,7 +28,7 @@ class NoPulls:
 
 
 def forgetter_of(data: DataFolder, store: Store, records: Records) -> ErasureService:
-    """Of a station that does not run."""
+    """Erasure service of a stopped station."""
     log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
     return ErasureService(log, store, checkpoints, records, SystemClock(), NoPulls())
 

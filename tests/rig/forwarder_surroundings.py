@@ -13,7 +13,7 @@ from shared.clock import Clock
 def surroundings(
     clock: Clock, leads: Callable[[], bool] = lambda: True, data: Path = Path()
 ) -> Surroundings:
-    """Of a station with an empty log, whose people nobody has named."""
+    """Surroundings of a station with an empty log and people without names."""
     return Surroundings(
         clock=clock,
         leads=leads,

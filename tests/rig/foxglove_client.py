@@ -41,7 +41,7 @@ class State:
 
 @dataclass(slots=True)
 class Received:
-    """What the server has sent so far."""
+    """Messages of the server so far."""
 
     info: dict[str, Any] = field(default_factory=dict)
     channels: dict[int, dict[str, Any]] = field(default_factory=dict)  # by id

@@ -27,7 +27,7 @@ def files_of_at_most(size_bytes: int) -> Iterator[None]:
 
 @contextmanager
 def disk_of_its_own(folder: Path, size_mb: int) -> Iterator[Path]:
-    """Where it is mounted, in memory; skips where none can be had."""
+    """Mount point of a disk in memory; skips the test if none can be mounted."""
     place = folder / "disk"
     place.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", f"size={size_mb}m", "tmpfs", str(place)]

@@ -120,7 +120,7 @@ DEVICE = "/dev/ttyACM0"
 
 
 def json_line(cls: str, **members: object) -> bytes:
-    """What is NaN is left out, as gpsd does it."""
+    """Line of gpsd, which leaves out NaN."""
     stated = {
         name: value
         for name, value in members.items()

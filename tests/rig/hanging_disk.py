@@ -12,7 +12,7 @@ import pytest
 
 @contextmanager
 def disk_that_can_hang(folder: Path, size_mb: int) -> Iterator[Path]:
-    """Where it is mounted; skips where none can be had.  Thawed at the end, whatever happened."""
+    """Mount point; skips the test if none can be mounted.  Thawed at the end in every case."""
     image, place = folder / "image", folder / "disk"
     place.mkdir()
     with image.open("wb") as file:

@@ -7,5 +7,5 @@ from typing import Any
 
 
 def despite(problem: Mapping[str, Any]) -> dict[str, Any]:
-    """What the incident was not closed over, to be named when it is asked for again."""
+    """Obstacles to the closing of the incident, to be named in the repeated request."""
     return {name: ids for name, ids in problem.items() if name.startswith("despite_")}

@@ -54,7 +54,7 @@ class Device:
 
 
 class Opened:
-    """What ``evdev.InputDevice`` is of it."""
+    """Replacement of ``evdev.InputDevice``."""
 
     def __init__(self, device: Device) -> None:
         self._device = device

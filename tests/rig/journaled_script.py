@@ -26,7 +26,7 @@ class JournaledScript(Script):
         return []
 
     def fetch(self, unit_id: str, pieces: int = 2) -> list[Output]:
-        """What waits in its journal comes, the newest piece first."""
+        """Delivers the messages that wait in the journal, the newest piece first."""
         held = self._journals.pop(unit_id)
         size = math.ceil(len(held) / pieces)
         outputs: list[Output] = []

@@ -26,7 +26,7 @@ _BUFFER_BYTES = 6000  # four full packets: what a slow modem queues before it th
 
 
 class Conditions(msgspec.Struct, frozen=True):
-    """Of one direction of the link; each packet has its own luck, so some overtake others."""
+    """Conditions of one direction of the link; drawn for each packet, so some overtake others."""
 
     loss: float = 0.0  # part of the packets
     delay_s: float = 0.0
@@ -36,7 +36,7 @@ class Conditions(msgspec.Struct, frozen=True):
 
 
 class Reported(msgspec.Struct, frozen=True):
-    """What the link is to be like from now on."""
+    """Conditions of the link from now on."""
 
     there: Conditions  # from the first device to the second
     back: Conditions

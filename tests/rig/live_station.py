@@ -69,7 +69,7 @@ class Store:
 
 
 def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -> EnginePorts:
-    """Of a drive whose surroundings are not looked at."""
+    """Ports of an engine without checks of its surroundings."""
     return EnginePorts(
         feed=feed,
         log=log,

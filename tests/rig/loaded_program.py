@@ -37,7 +37,7 @@ _LOADED.set_forkserver_preload(
 
 @dataclass(frozen=True)
 class Invocation:
-    """What a copy executes."""
+    """Call that a copy executes."""
 
     package: str
     arguments: tuple[str, ...]

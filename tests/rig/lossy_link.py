@@ -45,7 +45,7 @@ class Namespace:
             raise BusError(f"{_NOT_ALLOWED}: {error}") from error
 
     def inside(self) -> tuple[str, ...]:
-        """What to put in front of a command so that it runs in here."""
+        """Prefix of a command that runs in this namespace."""
         return ("nsenter", f"--net={self.path}")
 
     def join(self, device: str, peer: str) -> None:

@@ -76,7 +76,7 @@ def fused(header: Header, unit_id: str, /, **changes: object) -> FusedPosition:
 
 
 def gps_fix(header: Header, lat_deg: float, lon_deg: float, /, **changes: object) -> GpsFix:
-    """Of a receiver at rest under an open sky."""
+    """Fix of a receiver at rest under an open sky."""
     usual = GpsFix(
         header=header,
         fix_type=FixType.THREE_D,
@@ -93,7 +93,7 @@ def gps_fix(header: Header, lat_deg: float, lon_deg: float, /, **changes: object
 
 
 def status(header: Header, /, **changes: object) -> Status:
-    """Of somebody who walks, with nothing the matter."""
+    """Status of a walking wearer without problems."""
     usual = Status(
         header=header,
         activity=Activity.WALKING,
@@ -110,7 +110,7 @@ def status(header: Header, /, **changes: object) -> Status:
 
 
 def description(header: Header, /, **changes: object) -> UnitDescription:
-    """Of a unit with an inertial sensor and nothing else, which tracks itself."""
+    """Description of a unit with an inertial sensor only, which tracks itself."""
     usual = UnitDescription(
         header=header,
         software_version="1",

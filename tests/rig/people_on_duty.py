@@ -43,7 +43,7 @@ def duty(script: Script, unit_id: str = "FF-01") -> Duty:
 
 
 def confirmed(script: Script, unit_id: str = "FF-01") -> tuple[str, str]:
-    """How the last PAR confirmation came, and whose it is."""
+    """Kind and user of the last PAR confirmation."""
     last = duty(script, unit_id).confirmation
     assert last is not None
     return last.source, last.by

@@ -25,7 +25,7 @@ _CAMERA_PX = 8660, 5774
 
 
 def photograph() -> bytes:
-    """Of a camera: 6 MB, 50 megapixels."""
+    """Photograph of a camera: 6 MB, 50 megapixels."""
     noise = Image.effect_noise((_CAMERA_PX[0] // 8, _CAMERA_PX[1] // 8), 60.0).convert("RGB")
     return _written(noise.resize(_CAMERA_PX), "JPEG")
 

@@ -82,7 +82,7 @@ class Walk:
 
 
 def walk_from_the_engine() -> Walk:
-    """Of one unit, whose start was said, and which has gone on for five minutes."""
+    """Walk of one unit with a reported start, of five minutes."""
     walk = Walk("FF-01")
     walk.start("FF-01")
     walk.go(300)

@@ -1,4 +1,4 @@
-"""What is done with a station that runs as a process, and what its consoles are told."""
+"""Actions on a station that runs as a process, and the messages to its consoles."""
 
 from __future__ import annotations
 

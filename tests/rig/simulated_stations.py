@@ -36,7 +36,7 @@ _CLOCK_PERIOD_MS = 10_000_000  # so that it is exact as a position
 
 
 class StationsReport(msgspec.Struct):
-    """What was sent by all of them."""
+    """Messages of all of them."""
 
     seconds: float
     summaries: int

@@ -36,7 +36,7 @@ _RADII_M = 5.0, 30.0
 
 @dataclass(slots=True)
 class Sent:
-    """What a unit said."""
+    """Messages of a unit."""
 
     messages: int = 0
     position_times_ns: list[int] = field(default_factory=list)  # sensor times, UTC

@@ -93,7 +93,7 @@ class CommandByModes(Command):
 
 
 class CommandOfCostlyLogins(Command):
-    """Whose passwords take as long to check as those of a station that is installed."""
+    """Command of a station whose passwords take as long to check as those of an installed one."""
 
     quick_hash = False
 

@@ -44,7 +44,7 @@ PlainTcp = Annotated[bool, typer.Option("--plain", help="Over plain TCP instead 
 
 
 class Recorded(NamedTuple):
-    """What the log and the database hold after the run."""
+    """Contents of log and database after the run."""
 
     from_units: int  # messages, each counted once
     repeated: int
@@ -69,7 +69,7 @@ class StationProcess:
         self._cpu_s, self._since = self.cpu_s(), time.perf_counter()
 
     def cpu_share(self) -> float:
-        """Of one core, since ``begin_measuring``, children included."""
+        """Share of one core since ``begin_measuring``, children included."""
         return (self.cpu_s() - self._cpu_s) / (time.perf_counter() - self._since)
 
     def memory_mb(self) -> float:
@@ -115,7 +115,7 @@ class StationProcess:
 
 
 class Membership:
-    """Where the station's bus is and with what each unit gets in: its certificate, or nothing."""
+    """Address of the station's bus, and the certificate of each unit, if any."""
 
     def __init__(self, data: Path, unit_ids: Sequence[str], *, plain: bool) -> None:
         self.address = f"{'tcp' if plain else 'tls'}/127.0.0.1:{free_port()}"

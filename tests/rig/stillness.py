@@ -1,4 +1,4 @@
-"""How still a foot is: SHOE's statistic of whole walks, in numpy, apart from the tracker's own."""
+"""Stillness of a foot: SHOE's statistic of whole walks, in numpy, apart from the tracker's own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a forwarder to TAK is shown: a station's picture with people of whom a test changes what it
+"""Scene for a forwarder to TAK: a station's picture with people of whom a test changes what it
 cares about.
 """
 

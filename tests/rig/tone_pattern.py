@@ -22,7 +22,7 @@ def tone_pattern(began_ns: int, first: int, count: int, rate_hz: int) -> Samples
 
 
 def onsets_s(samples: npt.NDArray[np.float64], rate_hz: int) -> list[float]:
-    """Where the tone begins after silence, from the first sample."""
+    """Onsets of the tone after silence, from the first sample."""
     width = rate_hz // 100
     power = np.convolve(samples**2, np.ones(width) / width, "same")
     loud = (power > (_LEVEL / 8.0) ** 2).astype(np.int8)

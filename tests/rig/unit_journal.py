@@ -10,7 +10,7 @@ MessageOfUnit = tuple[int, int]  # boot id, sequence number
 
 
 def stated_by(journal: Path) -> set[MessageOfUnit]:
-    """Of an agent that may be writing to it, or has not begun to."""
+    """Messages in the journal of an agent that may be writing to it, or has not begun to."""
     if not journal.exists():
         return set()
     with closing(sqlite3.connect(f"file:{journal}?mode=ro", uri=True)) as database:

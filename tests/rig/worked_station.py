@@ -38,7 +38,7 @@ class Operator:
         self._api, self._units = api, units
 
     def prepare(self) -> None:
-        """What a station that starts again has already stays."""
+        """Prepares a station; the existing data of a restarted one is kept."""
         api = self._api
         if api.get("/units"):
             return
@@ -50,7 +50,7 @@ class Operator:
         api.post("/incidents", {"name": "Bench"})
 
     def answer(self) -> None:
-        """What was raised anew meanwhile is refused, and answered the next time."""
+        """Answers alarms; one raised again meanwhile is refused, and answered the next time."""
         for alarm in self._api.get("/alarms?limit=20"):
             if alarm["rule"] == "mayday" and alarm["state"] in _OPEN:
                 path = f"/alarms/{alarm['alarm_id']}"
@@ -84,7 +84,7 @@ class Work:
         self._rests.wait()
 
     def latency(self) -> Latency:
-        """Of what was sent since it was called last."""
+        """Latency of the messages since the last call."""
         sent = {unit.unit_id: tuple(unit.sent.position_times_ns) for unit in self._units}
         for unit in self._units:
             del unit.sent.position_times_ns[: len(sent[unit.unit_id])]

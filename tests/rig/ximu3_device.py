@@ -87,7 +87,7 @@ class TcpDevice:
                         connection.recv(1)
 
     def greet(self, connection: socket.socket) -> None:
-        """What comes before each session: nothing."""
+        """Bytes before each session: none."""
 
 
 class PtyDevice:

@@ -23,7 +23,7 @@ PA_PER_M = pressure_pa_at(SITE_M + 1.0) - pressure_pa_at(SITE_M)
 
 
 def down_of(added_pa: float, down_m: float = 0.0) -> float:
-    """What a barometer takes for its height above the site, negative."""
+    """Height above the site by a barometer, negative."""
     return down_m - added_pa / PA_PER_M
 
 

@@ -126,7 +126,7 @@ def test_unit_without_a_known_frame_teaches_no_axis(kind: FuserKind, is_stated: 
 
 
 def _through_two_buildings(fuser: Fuser, outside_m: int, angle_rad: float) -> Iterator[Estimate]:
-    """Of an own path that goes round rooms in one, then outside, and round rooms in another whose
+    """Estimates of a path round rooms in one building, outside, and round rooms in another whose
     walls stand at an angle; the own heading is given as 0, so that the fused one is how far off it
     is believed to be.
     """

@@ -36,7 +36,7 @@ PLAN = (
 
 @cache
 def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floats]:
-    """What is shown at each position of the wearer, and how high that truly is (n,)."""
+    """Shown estimate at each position of the wearer, and the true height (n,)."""
     simulation = open_simulation(scenario)
     identity = UnitIdentity("1", scenario, "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
@@ -60,7 +60,7 @@ def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floa
 
 
 def settled(shown: list[FusedPosition], height_m: Floats) -> list[tuple[FusedPosition, int]]:
-    """What is shown on the level of a storey, once the wearer has left the lift."""
+    """Shown estimates on the level of a storey, after the wearer has left the lift."""
     storeys = np.rint(height_m / STOREY_M).astype(int)
     level = np.abs(height_m - STOREY_M * storeys) < 0.3
     stays = [bool(level[max(0, row - 16) : row + 1].all()) for row in range(len(level))]

@@ -28,7 +28,7 @@ NOW_NS = round(datetime(2026, 7, 1, tzinfo=UTC).timestamp()) * NS_PER_S
 
 
 def positions_of(simulation: Simulation) -> list[Position]:
-    """What the unit says, its sensors calibrated by the book."""
+    """Positions of a unit whose sensors are calibrated as documented."""
     calibration = calibration_of(simulation)
     sensor = calibration.described(simulation.description)
     anchor = load_building().anchor

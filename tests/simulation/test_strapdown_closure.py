@@ -53,7 +53,7 @@ def _integrate(state: Floats, force: Floats, rate: Floats, dt_s: float) -> Float
 
 
 def _quaternion(rotation_nb: Floats) -> Floats:
-    """Of a matrix whose quaternion has a scalar part clearly above zero."""
+    """Quaternion of a matrix whose scalar part is clearly above zero."""
     w = 0.5 * np.sqrt(1.0 + np.trace(rotation_nb))
     skew = rotation_nb - rotation_nb.T
     return np.array([w, *(np.array([skew[2, 1], skew[0, 2], skew[1, 0]]) / (4.0 * w))])

@@ -37,7 +37,7 @@ def struck(imu, rows, rng):
 
 
 def rms_rise_m(rows):
-    """Of one foothold above the one before, on a flat floor."""
+    """Rise of one foothold above the one before, on a flat floor."""
     footfalls = np.flatnonzero(np.diff(rows.steps) > 0)
     return float(np.sqrt(np.mean(np.diff(rows.position_n_m[footfalls, 2]) ** 2)))
 

@@ -35,7 +35,7 @@ def test_wearer_who_gets_up_again_is_on_the_same_floor(leg):
 
 
 def test_bias_estimate_of_a_rest_is_independent_of_the_sample_rate():
-    """What was left out as worthless was judged by the sample: fast ones learned half."""
+    """Samples without information were selected one by one, so that fast rates learned half."""
     known = []
     for rate_hz in (100.0, 200.0, 800.0):
         simulation = Simulation(Scenario("rests", "rests", (Stand(30.0),), rate_hz=rate_hz), 1)

@@ -19,7 +19,7 @@ CHUNK = 16  # messages that come at once
 
 
 class PlayedLine:
-    """What was recorded comes as time goes by; at its end the source is closed."""
+    """Line that plays a recording in real time; at its end the source is closed."""
 
     def __init__(self, imu: ImuBatch, binary: bool) -> None:
         self.clock = ManualClock()

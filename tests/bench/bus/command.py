@@ -66,7 +66,7 @@ def bench_bus(
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """What is put on the station."""
+    """Load on the station."""
 
     units: int
     rate_hz: float  # messages a second of each unit

@@ -33,7 +33,7 @@ _KINDS = ((False, False), (False, True), (True, False), (True, True))  # fields,
 
 @dataclass(frozen=True, slots=True)
 class WireReport:
-    """What one console gets."""
+    """Traffic to one console."""
 
     fields: bool  # changed fields, else whole units
     compressed: bool

@@ -63,7 +63,7 @@ class _Watched:
 
 @dataclass(frozen=True, slots=True)
 class PageReport:
-    """Of one page; times in milliseconds."""
+    """Figures of one page; times in milliseconds."""
 
     slowed: float  # how many times slower its processor is than the machine's
     shown: int  # messages that were on the screen

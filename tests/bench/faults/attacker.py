@@ -44,7 +44,7 @@ def forge(names: list[str], _log: Path, _chance: random.Random) -> Iterator[Reco
 
 
 def repeat(names: list[str], log: Path, chance: random.Random) -> Iterator[Record]:
-    """What the units did say: in any order, many times, and of another day."""
+    """Replays recorded messages of the units: in any order, many times, and of another day."""
     known = [
         (key, payload)
         for _, key, payload in read_log(log)

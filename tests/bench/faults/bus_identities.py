@@ -14,7 +14,7 @@ MEMBERS = frozenset({UNIT, OTHER, BABBLER})  # who may speak, each for itself
 
 
 class Members:
-    """Of one station; whoever is asked for twice stays the same."""
+    """Identities of one station; a repeated request gives the same one."""
 
     def __init__(self, folder: Path, host: str, address: str) -> None:
         """``address``: the station's endpoint on the bus."""
@@ -44,7 +44,7 @@ class Members:
 
     @property
     def foreign(self) -> str:
-        """Of the same name, by another authority."""
+        """Identity of the same name, by another authority."""
         return self._file("foreign", lambda: self._authority(self._folder / "foreign").enroll(UNIT))
 
     @property

@@ -122,7 +122,7 @@ def _report(
     over_ns: int,
     memory_mb: float,
 ) -> FaultReport:
-    """What was said ``before`` must still be there; else it was lost now."""
+    """Messages of ``before`` must still be there; else they were lost now."""
     logged = list(one.logged())
     arrived_ns = {record.message: record.t_ns for record in reversed(logged)}
     sent = stated - before

@@ -28,7 +28,7 @@ class Fault(Protocol):
 
     @property
     def seconds(self) -> float:
-        """How long it lasts, about."""
+        """Approximate duration."""
         ...
 
     @property

@@ -141,7 +141,7 @@ class Site:
                 one.resume()
 
     def damage_log(self, chance: random.Random) -> None:
-        """What a station that does not run has on its disk: bits flip, and the end is gone."""
+        """Damages the log of a stopped station: bits flip, and the end is missing."""
         for path in segment_paths(self._data / "log"):
             content = bytearray(path.read_bytes())
             for _ in range(_FLIPPED):
@@ -225,7 +225,7 @@ class Site:
                 yield number
 
     def alarms(self, rule: str) -> list[AlarmChange]:
-        """What has become of the unit's alarms of a rule."""
+        """States of the unit's alarms of a rule."""
         changes = []
         for _, key, payload in read_log(self._data / "log"):
             message = decode(ALARM, payload) if key == ALARM.key(STATION_ID) else None

@@ -199,7 +199,7 @@ class _Tally:
 
 
 def _alone(person: Person, turn_rad: float) -> dict[str, Floats]:
-    """Where fixes alone and the path alone put the wearer, row by row."""
+    """Positions by fixes alone and by the path alone, row by row."""
     cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
     own_m = np.array([(position.north_m, position.east_m) for position in person.positions])
     path_m = own_m @ np.array([[cosine, sine], [-sine, cosine]])
@@ -213,7 +213,7 @@ def _alone(person: Person, turn_rad: float) -> dict[str, Floats]:
 
 
 def _switching(person: Person, turn_rad: float) -> tuple[Floats, Floats]:
-    """Where the documents' rule puts the wearer, (n, 2), and normalised squared errors, (n,).  It
+    """Positions by the documents' rule, (n, 2), and normalised squared errors, (n,).  It
     has the raw fixes, and a compass once, at the beginning.
     """
     fuser, truth_m = GpsSwitching().new(), person.truth.place_m[:, :2]

@@ -40,7 +40,7 @@ class PathKeeping:
         return cast("Fuser", _Keeping(self._kind.new(), self.histories[-1], self._known))
 
     def evidence(self, runs: Sequence[Run]) -> dict[str, UnitEvidence]:
-        """Of each person that was fused, by number."""
+        """Evidence of each fused person, by number."""
         found = {}
         for number, (history, run) in enumerate(zip(self.histories, runs, strict=True)):
             for fix in run.taken:
@@ -55,7 +55,7 @@ class PathKeeping:
 
 
 def engine_evidence(person: Person) -> dict[str, UnitEvidence]:
-    """Of the receiver on the engine's roof."""
+    """Evidence of the receiver on the engine's roof."""
     history = PathHistory()
     for row in range(0, len(person.truth.t_s), RATE_HZ):
         t_ns = message_factory.mono_ns(float(person.truth.t_s[row]))

@@ -28,7 +28,7 @@ SEEDS = range(16)
 
 @dataclass(frozen=True)
 class Errors:
-    """Of the unit's own path and of its receiver."""
+    """Errors of the unit's own path and of its receiver."""
 
     heading_rad_per_sqrt_m: float = 0.003
     turn_part: float = 0.004

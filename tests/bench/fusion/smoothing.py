@@ -229,7 +229,7 @@ def _relative(report: SmoothingReport, way: str, stage: str) -> str:
 
 
 def _until(evidence: UnitEvidence, t_ns: int) -> UnitEvidence:
-    """What was known until then."""
+    """Evidence until then."""
     path = evidence.path
     rows, fixes = path.t_ns <= t_ns, path.fix_t_ns <= t_ns
     columns: Mapping[str, Any] = {

@@ -28,7 +28,7 @@ _KINDS = (TrailKind.FUSED, TrailKind.SMOOTHED)
 
 @dataclass(frozen=True, slots=True)
 class ExportFigures:
-    """Of one command, from its start to its end."""
+    """Figures of one command, from its start to its end."""
 
     file: str
     kind: str

@@ -220,7 +220,7 @@ def _seek_s(
 def _times_real(
     player: ReplayProcess | ReplaySession, watcher: Watcher, window: ReplayWindow
 ) -> tuple[float, float]:
-    """Of all of it, or as much as goes by in half a minute; and how much that was."""
+    """Speed of the whole replay, or of half a minute of it, and the part that was replayed."""
     _seek_s(player, watcher, window, 0.0)
     player.set_speed(FASTEST)
     began_s, began_ms = time.perf_counter(), player.view().at_ms
@@ -293,7 +293,7 @@ def _cpu_s(worker: psutil.Process) -> float:
 
 
 def _peak_mb(worker: psutil.Process) -> float:
-    """Of the replay's process so far, with what it shares with the one it is copied from."""
+    """Peak memory of the replay's process, with the pages shared with its parent."""
     status = Path(f"/proc/{worker.pid}/status").read_text(encoding="ascii")
     (peak_kb,) = (line.split()[1] for line in status.splitlines() if line.startswith("VmHWM"))
     return int(peak_kb) / 1e3

@@ -143,7 +143,7 @@ def _same_picture(two: TwoStations) -> bool:
 
 
 def _shown(station: Station) -> dict[str, Any]:
-    """What a console sees first."""
+    """First snapshot of a console."""
     api = station.logged_in()
     with connect(
         api.live_url,

@@ -29,7 +29,7 @@ _NOT_YET = (urllib.error.URLError, ConnectionError, TimeoutError, StoreError)
 
 
 class Logged(NamedTuple):
-    """What one station's log holds."""
+    """Contents of one station's log."""
 
     messages: Counter[MessageId]  # how often each of the units' messages is there
     events: list[tuple[int, str, bytes]]
@@ -41,7 +41,7 @@ class Logged(NamedTuple):
 
 @dataclass
 class Place:
-    """Where a station or a unit runs."""
+    """Host of a station or a unit."""
 
     address: str = "127.0.0.1"
     namespace: Namespace | None = None
@@ -89,7 +89,7 @@ class Station:
             end_hard(self.process)
 
     def cpu_s(self) -> float:
-        """Of the program as it runs, children included; 0 while it does not."""
+        """Processor time of the running program, children included; 0 while it does not run."""
         if self.process is None or self.process.poll() is not None:
             return 0.0
         return processes.cpu_s(self.process.pid)
@@ -106,7 +106,7 @@ class Station:
         return self.place.call(lambda: self.logged_in().post(path, body))
 
     def refuses(self, path: str, body: dict[str, Any]) -> bool:
-        """Whether it says that nothing is to be changed here."""
+        """True if the station refuses changes."""
         try:
             self.post(path, body)
         except urllib.error.HTTPError as error:

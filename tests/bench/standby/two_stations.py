@@ -93,11 +93,11 @@ class TwoStations:
             end_hard(unit)
 
     def both_have(self, reported: set[MessageId]) -> bool:
-        """Whether these messages are in both logs."""
+        """True if these messages are in both logs."""
         return all(reported <= one.logged().messages.keys() for one in self.both)
 
     def output(self) -> set[MessageId]:
-        """What the units have ever said, by their journals."""
+        """All messages of the units, by their journals."""
         units = self._folder / "units"
         return {
             (unit_id, boot_id, seq)

@@ -1,4 +1,4 @@
-"""How much of the processor's time a station takes for what so many wearers say, and what its
+"""Processor time of a station for the messages of many wearers, and the times that its
 parts could take alone.
 """
 
@@ -46,14 +46,14 @@ class ThroughputReport:
 
 @dataclass(frozen=True, slots=True)
 class Yardsticks:
-    """Of this machine now."""
+    """Speed of this machine now."""
 
     bare_zenoh_hz: float  # messages of 200 bytes that a subscriber takes that does nothing else
     recording_hz: float  # messages that the log alone takes, a second of processor time
 
 
 def measure_yardsticks(progress: Progress) -> Yardsticks:
-    """What a station could take if nothing was done with it."""
+    """Rates of a station that does nothing with the messages."""
     task = progress.add_task("bare Zenoh, and the log alone", total=2.0)
     address = f"tcp/127.0.0.1:{free_port()}"
     with bare_subscriber(address) as far_end:
@@ -112,7 +112,7 @@ def _memory_mb() -> float:
 
 
 def _slope(memory_mb: list[float]) -> float | None:
-    """Of the last third, by least squares; a run of a few minutes tells nothing."""
+    """Slope of the last third, by least squares; meaningless for a run of a few minutes."""
     late = memory_mb[2 * len(memory_mb) // 3 :]
     if len(late) < 3:
         return None

@@ -1,4 +1,4 @@
-"""What the wearer did, and how often the unit said so: labels and their confusion matrix.
+"""Labels of activities, and their confusion matrix with the unit's classification.
 
 Labels of recordings come from their reference alone.  Where it cannot tell the kinds apart
 (between walking and running; on a turn of speed) there is no label and nothing is scored.

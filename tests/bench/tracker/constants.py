@@ -52,7 +52,7 @@ class Tracked:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What a constant decides, of its halving and its doubling what does more."""
+    """Influence of a constant: the larger one of the effects of its halving and its doubling."""
 
     constant: str
     value: float

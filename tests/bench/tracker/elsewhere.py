@@ -38,7 +38,7 @@ _FIT_OF = {"body"}  # trackers with a length that was fitted to these people
 
 
 class _Walk(msgspec.Struct):
-    """What is used of the ``trial.json`` of a walk."""
+    """Fields in use of the ``trial.json`` of a walk."""
 
     subject: int
     path_length_m: float

@@ -35,7 +35,7 @@ class NorthFound:
 
 
 def field_of_house() -> EarthField:
-    """What the model says of the place where simulated people walk."""
+    """Field of the model at the place where simulated people walk."""
     anchor = load_building().anchor
     found = earth_field(anchor.lat_deg, anchor.lon_deg, anchor.height_m, _NEW_YEAR_NS)
     assert isinstance(found, EarthField)

@@ -1,4 +1,4 @@
-"""How far a track strays from a simulated walk, told in the walk's own first heading."""
+"""Errors of a track against a simulated walk, in the frame of the walk's first heading."""
 
 from __future__ import annotations
 

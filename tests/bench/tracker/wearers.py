@@ -47,7 +47,7 @@ _STOOD_M = 0.02  # a height is shown to no less, whatever the tracker states
 
 @dataclass(frozen=True, slots=True)
 class Wearer:
-    """What somebody does, how fast he is sampled, and from when on he is recorded."""
+    """Activity of a wearer, sample rate, and start of the recording."""
 
     does: str
     legs: tuple[Leg, ...]
@@ -57,7 +57,7 @@ class Wearer:
 
 @dataclass(frozen=True, slots=True)
 class Strayed:
-    """How far one of them went astray, and what was stated of it."""
+    """Errors of one wearer, with the stated uncertainty."""
 
     path: float  # largest horizontal error by the length of the walk
     error_m: float  # the same in metres
@@ -212,7 +212,7 @@ def stray(kind: Wearer, seed: int, calibrated: bool) -> Strayed:
 
 
 def _length_m(way_m: Floats) -> float:
-    """Of the way, by the places of every stride or so; standing about is none."""
+    """Length of the path, by about one position a stride, so that standing adds nothing."""
     steps_m = np.linalg.norm(np.diff(way_m[::2], axis=0), axis=1)
     return max(float(steps_m[steps_m > 0.15].sum()), 1.0)
 

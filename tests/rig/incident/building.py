@@ -50,7 +50,7 @@ class SteelBuilding:
 
     @property
     def corridor_north_m(self) -> float:
-        """Of its middle."""
+        """North coordinate of the middle of the corridor."""
         return self.depth_m / 2.0
 
     def down_m(self, floor: int) -> float:
@@ -98,7 +98,7 @@ class SteelBuilding:
 
 @dataclass
 class _Drawn:
-    """What has been drawn of a building."""
+    """Drawn features of a building."""
 
     rooms: list[Room] = field(default_factory=list)
     walls: list[Wall] = field(default_factory=list)  # but for the corridor's

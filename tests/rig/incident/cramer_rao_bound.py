@@ -94,7 +94,7 @@ def _afterwards(moves: Floats, expected: Floats, known: Floats) -> Floats:
 
 
 def _move(fades: Floats, step: tuple[float, float, float]) -> tuple[Floats, Floats]:
-    """What a step (north, east and length) does to the state, and the variances it adds."""
+    """Transition of the state by a step (north, east and length), and the added variances."""
     north_m, east_m, length_m = step
     moving_s = 1.0 / RATE_HZ if length_m * RATE_HZ > errors.MOVING_MPS else 0.0
     move = np.diag(fades)

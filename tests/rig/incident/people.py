@@ -58,7 +58,7 @@ class Move:
 
 
 class Script:
-    """What one person does, move by move."""
+    """Movements of one person."""
 
     def __init__(self, rng: np.random.Generator, begin: Place, *, from_engine: bool) -> None:
         self._rng = rng
@@ -98,7 +98,7 @@ class Script:
         self._places.append(move.to_m)
 
     def truth(self) -> Truth:
-        """Of somebody who goes in straight lines at an even pace."""
+        """True path of a person who walks in straight lines at a constant speed."""
         t_s = np.arange(0.0, LASTS_S, 1.0 / RATE_HZ)
         places = np.array(self._places)
         columns = [np.interp(t_s, self._t_s, places[:, axis]) for axis in range(3)]
@@ -107,7 +107,7 @@ class Script:
 
 
 def draw_engine(rng: np.random.Generator, building: SteelBuilding) -> Place:
-    """Where the engine stands."""
+    """Draws the position of the engine."""
     east_m = building.entrance_east_m + float(rng.uniform(-15.0, 15.0))
     return float(rng.uniform(-38.0, -25.0)), east_m
 

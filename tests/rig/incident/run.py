@@ -120,7 +120,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Known:
-    """What somebody told the station."""
+    """Information entered at the station."""
 
     plan: bool
     engine: bool = True  # where it stands, and so where all begin; it has a receiver
@@ -128,7 +128,7 @@ class Known:
 
 @dataclass
 class Site:
-    """What the station knows beside each person's own."""
+    """Information of the station apart from that of each person."""
 
     learnt: LearntBuilding = field(default_factory=LearntBuilding)
     common_mode_error: CommonModeError = field(default_factory=CommonModeError)

@@ -1,4 +1,4 @@
-"""How far off, how sure and how smooth an estimate of an incident's people is, by stage."""
+"""Error, uncertainty and smoothness of estimates of an incident's people, by stage."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HELD_STAGES = ("outside", "at the door", "1 min", "5 min", "10 min inside", "bac
 
 
 def stages(truth: Truth) -> dict[str, Flags]:
-    """Which rows belong to which stage."""
+    """Rows of each stage."""
     t_s, into_s, out_s = truth.t_s, truth.goes_in_s, truth.comes_out_s
     left = np.linalg.norm(truth.place_m[:, :2] - truth.place_m[0, :2], axis=1) > LEFT_M
     found_s = float(t_s[left.argmax()]) if truth.from_engine else FOUND_S
@@ -43,7 +43,7 @@ def stages(truth: Truth) -> dict[str, Flags]:
 
 
 def normalised2(estimate: Estimate, off_m: Floats) -> float:
-    """Of an error (2,): chi-square of two degrees of freedom, where what is stated is right."""
+    """Normalised square of an error (2,): chi-square with 2 degrees of freedom if stated right."""
     product = estimate.correlation_ne * estimate.std_north_m * estimate.std_east_m
     spread = np.array([[estimate.std_north_m**2, product], [product, estimate.std_east_m**2]])
     return float(off_m @ np.linalg.solve(spread, off_m))
@@ -51,7 +51,7 @@ def normalised2(estimate: Estimate, off_m: Floats) -> float:
 
 @dataclass
 class Scores:
-    """Of one way of knowing, over all people."""
+    """Scores of one method, over all people."""
 
     errors_m: dict[str, list[Floats]] = field(
         default_factory=lambda: {stage: [] for stage in ERROR_STAGES}
@@ -94,13 +94,13 @@ class Scores:
         return float(np.concatenate(self.held[stage]).mean())
 
     def part_astray(self, how: str) -> float:
-        """Of all the time: far off, and the stated region says that nobody is there."""
+        """Part of the time with a large error outside the stated region."""
         return float(np.concatenate(self.astray[how]).mean())
 
 
 @dataclass
 class FloorScores:
-    """Of everybody inside who stands on a storey."""
+    """Scores of floors, over all people inside who stand on a storey."""
 
     right: list[Flags] = field(default_factory=list)
     stated: list[Floats] = field(default_factory=list)

@@ -68,7 +68,7 @@ STEPS_MOST, STEP_PA = 4, 30.0
 
 @dataclass(frozen=True)
 class OdometryIncrements:
-    """What a unit's tracker says, row by row, in the unit's own frame."""
+    """Output of a unit's tracker, row by row, in the unit's own frame."""
 
     place_m: Floats  # (n, 3)
     turn_rad: float  # heading of the own north in the incident frame, at the start
@@ -129,7 +129,7 @@ def draw_sky_m(rng: np.random.Generator, t_s: Floats) -> Floats:
 def engine_fixes_of(
     rng: np.random.Generator, t_s: Floats, engine_m: tuple[float, float], sky_m: Floats
 ) -> dict[int, PlaceFix]:
-    """What the receiver on the engine's roof says, by row."""
+    """Fixes of the receiver on the engine's roof, by row."""
     slow_m = ROOF_SLOW_M * _wandering(rng, len(t_s), ROOF_SLOW_S)
     places_m = np.array(engine_m) + sky_m + slow_m + ROOF_WHITE_M * rng.normal(size=sky_m.shape)
     return {
@@ -146,7 +146,7 @@ def engine_fixes_of(
 
 
 def _wandering(rng: np.random.Generator, count: int, lasts_s: float) -> Floats:
-    """Of unit variance (n, 2), first-order Gauss-Markov."""
+    """First-order Gauss-Markov process of unit variance (n, 2)."""
     keep = math.exp(-1.0 / RATE_HZ / lasts_s)
     fresh = math.sqrt(1.0 - keep**2) * rng.normal(size=(count, 2))
     fresh[0] = rng.normal(size=2)
@@ -204,13 +204,13 @@ def draw_air(rng: np.random.Generator, t_s: Floats) -> Air:
 
 
 def pressures_pa(rng: np.random.Generator, air: Air, truth: Truth) -> Floats:
-    """What one person's barometer says (n,)."""
+    """Readings of one person's barometer (n,)."""
     inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
     return _stated_pa(rng, -truth.place_m[:, 2], air.weather_pa + air.inside_pa * inside)
 
 
 def reference_pa(rng: np.random.Generator, air: Air) -> Floats:
-    """What the station's own barometer says (n,)."""
+    """Readings of the station's own barometer (n,)."""
     return _stated_pa(rng, np.zeros(len(air.weather_pa)), air.weather_pa)
 
 
@@ -222,7 +222,7 @@ def _stated_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> 
 
 
 def positions_of(truth: Truth, own: OdometryIncrements) -> list[Position]:
-    """What a unit without a name and a barometer publishes that has walked such a path."""
+    """Positions published for such a path by a unit without a name and a barometer."""
     return [_position_of(truth, own, row) for row in range(len(truth.t_s))]
 
 

@@ -112,7 +112,7 @@ def _walked(walk: PublishedWalk, script: Script, building: SteelBuilding, count:
 
 
 def _turn_rad(truth: Truth, positions: Sequence[Position]) -> float:
-    """How the own frame is turned, by the first metres."""
+    """Rotation of the own frame, by the first metres."""
     away_m = np.linalg.norm(truth.place_m[:, :2] - truth.place_m[0, :2], axis=1)
     until = int((away_m > HEADING_M).argmax()) + 1
     north_m, east_m = np.diff(truth.place_m[:until, :2], axis=0).T

@@ -1,4 +1,4 @@
-"""How an incident's people walk what they are told to, and what their units say of it."""
+"""Walks of an incident's people by their script, and the messages of their units."""
 
 from __future__ import annotations
 

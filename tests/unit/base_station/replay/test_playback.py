@@ -101,7 +101,7 @@ def test_checkpoints_of_another_program_do_not_send_a_seek_back(
 def test_passed_states_are_not_stepped_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the station saved nothing that this program can use: seeking back is as quick."""
+    """Without a usable checkpoint of the station, seeking back is as quick."""
     monkeypatch.setattr("base_station.replay.playback.SAVED_APART", 20)
     monkeypatch.setattr("base_station.replay.playback.BURST", 7)  # ends amid those of one time
     plain = Playback(archive(walk_with_mayday(), tmp_path / "none"))

@@ -156,7 +156,7 @@ def test_replay_plays_to_the_end_and_stops_there(session: ReplaySession, screen:
 
 
 def test_messages_of_once_a_second_are_replayed(tmp_path: Path, screen: Screen) -> None:
-    """Of a gap that the journal filled, and of problems of the station."""
+    """Messages of a gap that the journal filled, and of problems of the station."""
     script, missed = Script(), []
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))

@@ -144,7 +144,7 @@ def test_clock_set_back_hides_no_collapse(by_step: bool) -> None:
 
 
 def test_late_step_changes_no_known_state(foot: Foot) -> None:
-    """Of rows that the tracker delayed by a second."""
+    """Rows that the tracker delayed by a second."""
     late = Stride(foot.now_ns, 1.0, 1.3, 0.0, up(10.0))
     foot.held(0.0, 1.0)
     foot.posture.take_stride(late)

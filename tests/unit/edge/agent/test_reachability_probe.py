@@ -85,7 +85,7 @@ def test_station_that_comes_during_the_wait_is_noticed(port: int) -> None:
 
 
 def test_many_probes_hold_only_a_few_connections() -> None:
-    """Where packets are dropped, attempts pile up and the oldest are given up."""
+    """With dropped packets attempts accumulate, and the oldest are ended."""
     probe = ReachabilityProbe(["tcp/192.0.2.1:7447"])  # an address without a host
     for _ in range(40):
         probe._begin_attempts()

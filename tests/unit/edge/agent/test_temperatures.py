@@ -1,4 +1,4 @@
-"""What a unit publishes of its temperatures."""
+"""Published temperatures of a unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the wearer is notified of follows from the unit's state alone, the most urgent first."""
+"""Notices of the wearer follow from the unit's state alone, the most urgent first."""
 
 from __future__ import annotations
 

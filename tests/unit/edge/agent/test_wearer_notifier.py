@@ -280,7 +280,7 @@ def test_an_order_that_is_sent_again_is_played_anew_in_place_of_the_first(rig: R
 def test_an_order_that_was_acknowledged_does_not_alarm_again_also_after_a_restart(
     tmp_path: Path, first: str
 ) -> None:
-    """Whether the unit got the order itself or only a repeat of it."""
+    """Holds for the order itself and for a repetition of it."""
     before = Rig(tmp_path)
     with closing(before.notifier):
         begun = (

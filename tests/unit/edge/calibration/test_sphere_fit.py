@@ -34,7 +34,7 @@ def directions(count: int, seed: int = 1) -> Floats:
 
 
 def readings(gain: Floats, lengths: Floats | float, towards: Floats) -> Floats:
-    """What a sensor with these errors shows of vectors that have nearly the length 1."""
+    """Readings of a sensor with these errors, of vectors that have nearly the length 1."""
     true = towards * np.reshape(lengths, (-1, 1))
     return np.asarray(np.linalg.solve(gain, true.T).T + CENTRE)
 

@@ -163,7 +163,7 @@ def test_half_the_round_trip_is_how_far_an_exchange_can_be_off(
 
 
 def test_a_way_that_was_slow_there_and_is_slow_back_now_is_possible() -> None:
-    """What all of them err by together no number of them shows."""
+    """An error common to all exchanges is unobservable."""
     offset = ClockOffsetFilter()
     for number in range(300):
         assert offset.note(exchange(float(number), there_s=1.0, back_s=0.0))

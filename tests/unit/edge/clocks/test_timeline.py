@@ -42,7 +42,7 @@ BATCH_NS = NS_PER_S // 20
 
 
 def followed(follower: Follower, t_s: float, now_s: float) -> float:
-    """Where a batch is laid that comes now, in seconds."""
+    """Time in seconds that a batch arriving now gets."""
     t_ns = round(t_s * NS_PER_S)
     timeline = follower.place(t_ns - BATCH_NS, t_ns, round(now_s * NS_PER_S))
     return timeline.to_mono_ns(t_ns) / NS_PER_S

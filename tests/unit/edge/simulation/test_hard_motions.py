@@ -162,7 +162,7 @@ def test_other_rates_are_those_that_are_promised(name: str, rate_hz: float) -> N
     ],
 )
 def test_runners_are_as_restless_as_recorded_ones(walks, hard_walks, name, trials) -> None:
-    """Of all strides the stillest moments, within a factor of three of the recorded medians."""
+    """The stillest moments of all strides are within a factor of three of the recorded medians."""
     folders = {"walks": walks, "hard": hard_walks}
     recorded = []
     for folder, trial in trials:

@@ -55,7 +55,7 @@ def start_of(simulation: Simulation, activity: Activity) -> float:
 
 
 def crosses(a: Floats, b: Floats, c: Point, d: Point) -> bool:
-    """Whether the segments a-b and c-d properly cross."""
+    """True if the segments a-b and c-d properly cross."""
 
     def side(p: Floats | Point, q: Floats | Point, r: Floats | Point) -> float:
         return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
@@ -227,7 +227,7 @@ def test_no_foot_stands_stiller_than_recorded_ones() -> None:
 
 
 def test_no_foot_on_the_ground_goes_faster_than_recorded_ones() -> None:
-    """Of 511 stances of motion capture none rose or sank by more than 9.3 cm/s."""
+    """In 511 stances of motion capture no foot rose or sank faster than 9.3 cm/s."""
     simulation = Simulation(Scenario("test", "", (Walk(((3000.0, 0.0),)),)))
     middle_s = np.array(simulation.plan.footfall_s[:-1]) + 0.5 * WALK.flat * WALK.stride_s
     up_or_down_mps = np.abs(simulation.truth(middle_s).velocity_n_mps[:, 2])

@@ -153,7 +153,7 @@ def test_other_keys_and_repeats_are_nothing(devices, opened) -> None:
 
 @pytest.mark.parametrize("is_pressed", [True, False])
 def test_where_the_kernel_has_dropped_events_the_state_counts(devices, opened, is_pressed) -> None:
-    """What it had before is told, and what it has left over is the rest of something."""
+    """Events before the loss are reported; the remaining ones are a partial event."""
     device = devices.plug_in(1)
     button = opened("AB Button")
     button.read()

@@ -118,7 +118,7 @@ PRESSES = st.lists(
 
 
 def holds_ms(presses: Presses) -> Iterator[int]:
-    """How long the contact was closed, each time, but for what lasted less than 30 ms."""
+    """Durations of closed contacts, except those shorter than 30 ms."""
     begun_ms: int | None = None
     t_ms = 0
     for pressed_ms, released_ms in presses:

@@ -86,7 +86,7 @@ def test_what_was_begun_of_a_segment_that_is_there_does_not_bring_back_what_was_
 
 
 def test_a_segment_that_was_moved_away_does_not_come_back(tmp_path: Path) -> None:
-    """What was found of it before it was mended stays where it is."""
+    """The recovered part of a segment before its repair stays in its place."""
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"1", urgent=True)
     recover_log(tmp_path)

@@ -369,7 +369,7 @@ def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> f
 
 @pytest.mark.slow
 def test_plan_with_other_storeys_renumbers_trails() -> None:
-    """Of units without pins too, received or silent; pinned trails as without pins."""
+    """Trails of units without pins too, received or silent; pinned trails as without pins."""
     story = Story()
     story.script.act(RemovePin("met"))
     story.script.act(RemovePin("of B"))

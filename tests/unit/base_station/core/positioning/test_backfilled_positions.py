@@ -69,7 +69,7 @@ def test_gap_in_the_trail_is_filled_at_its_own_time(walked):
 
 
 def test_late_position_is_shown_once_for_each_second(walked):
-    """Of five positions a second, as trail and store keep it; a late fix finds all of them."""
+    """One of five positions a second, as in trail and store; a late fix finds all of them."""
     reported = [
         output.north_m
         for second in (11, 12)
@@ -155,7 +155,7 @@ def test_journal_of_an_unregistered_unit_is_not_used(walked):
 
 
 def test_unreadable_backfilled_message_counts_as_received(walked):
-    """Of a newer program, or damaged: it is not fetched from the journal again and again."""
+    """A message of a newer program, or a damaged one, is not fetched repeatedly."""
     payload = encode(walked.position(15))
     key = POSITION.key("FF-01")
     unread = Rejected(START_NS + 31 * NS_PER_S, key, "of a newer program", ("FF-01", 7, 16))

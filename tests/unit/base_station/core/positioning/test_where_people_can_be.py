@@ -117,7 +117,7 @@ def test_unit_with_a_recent_fix_is_outside_without_a_plan(
 
 
 def test_pin_that_rejects_fixes_changes_no_weather() -> None:
-    """Of two with the same walk and the same air, one is pinned to where no fix leads."""
+    """Two units walk alike in the same air; the fixes of one contradict its pin."""
     anchor, rises_m = Anchor(52.0, 4.0, 0.0, 0.0), {}
     for is_pinned in (False, True):
         script = Script()

@@ -32,7 +32,7 @@ def errors_s(
 
 
 def late_by(count: int, seed: int = 1, jitter_s: float = 0.08) -> np.ndarray:
-    """What its latency makes, and what the line adds: mostly little."""
+    """Delay by the receiver's latency and by the line, which mostly adds little."""
     return LATENCY_S + np.random.default_rng(seed).exponential(jitter_s, count).clip(0.0, 0.4)
 
 

@@ -22,7 +22,7 @@ S = NS_PER_S
 
 
 def received(values: Iterable[bytes], step_ns: int = S) -> list[Report]:
-    """Of a receiver that says each part ``step_ns`` after the one before."""
+    """Fixes of a receiver that sends each part ``step_ns`` after the one before."""
     receiver = Nmea("/dev/ttyUSB0")
     reports: list[Report] = []
     for number, part in enumerate(values):

@@ -31,7 +31,7 @@ def test_a_scale_of_one_axis_goes_before_that_of_all(tree: SysfsTree) -> None:
 
 @pytest.mark.parametrize("attribute", ["in_accel_mount_matrix", "in_mount_matrix", "mount_matrix"])
 def test_a_mount_matrix_turns_the_sensor_s_axes_into_the_hardware_s(tree, attribute) -> None:
-    """Of the kernel's documentation: it is multiplied with what the sensor shows."""
+    """By the kernel's documentation it is multiplied with the reading of the sensor."""
     device = tree.iio(0, in_accel_scale="0.01", **{attribute: "0, 1, 0; -1, 0, 0; 0, 0, 1"})
     assert read_conversion(device, ACCEL).apply(RAW) == pytest.approx(np.array([[2.0, -1.0, 3.0]]))
 

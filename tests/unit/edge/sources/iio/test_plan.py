@@ -1,4 +1,4 @@
-"""How a device is set: rates and ranges of those that its driver offers."""
+"""Settings of a device: rates and ranges of those that its driver offers."""
 
 from __future__ import annotations
 

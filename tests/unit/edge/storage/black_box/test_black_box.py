@@ -60,7 +60,7 @@ def spoiled(source: Source) -> list[SensorBatch]:
 
 
 def messages_of(source: Source, raw: SampleEncoder, batches: list[SensorBatch]) -> list[Message]:
-    """What a unit says of these batches."""
+    """Messages of a unit for these batches."""
     description = raw.description(
         0, (unit_sensor("", source.description),), source="", tracker="eskf"
     )

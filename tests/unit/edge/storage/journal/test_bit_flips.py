@@ -51,7 +51,7 @@ def opened(path: Path) -> Journal:
 
 
 def served(journal: Journal, what: str) -> list[int]:
-    """What a station gets that asks on and on, from behind the last answer."""
+    """Messages for a station that queries repeatedly from the end of the last answer."""
     server = JournalServer("u1", journal)
     seqs: list[int] = []
     first = 1

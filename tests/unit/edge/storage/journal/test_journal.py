@@ -139,7 +139,7 @@ def test_what_the_station_has_goes_first(tmp_path):
 
 
 def test_of_what_the_station_has_the_oldest_boot_goes_first(tmp_path):
-    """What the last one said, such as a mayday, is still to be known at the next start."""
+    """Messages of the last boot, such as a mayday, are needed at the next start."""
     for boot_id in (1, 2):
         journal = spool_at(tmp_path, boot_ids=[boot_id])
         journal.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
@@ -366,7 +366,7 @@ def test_a_journal_that_damage_keeps_from_being_written_is_begun_anew_at_once(tm
 
 
 def test_a_power_cut_while_the_new_journal_takes_its_place_costs_nothing(tmp_path):
-    """What is not in the file itself yet, and has been moved already, belongs to the new one."""
+    """Entries that are moved already, and not yet in the file itself, belong to the new one."""
     written, cut = tmp_path / "written", tmp_path / "cut" / "journal.sqlite"
     cut.parent.mkdir()
     running = spool_at(written, boot_ids=[1])

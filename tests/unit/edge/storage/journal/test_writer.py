@@ -98,7 +98,7 @@ def test_what_a_disk_refuses_is_written_when_it_has_room(journal, journal_writer
 def test_nobody_waits_for_longer_than_the_disk_takes(
     journal, journal_writer, monkeypatch, full_disk
 ):
-    """What is said would be on the air a second late, all of it."""
+    """Otherwise every message would be sent a second late."""
     monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 1e6)
     journal_writer.write([mayday(1)])
     assert kept(journal) == [1]

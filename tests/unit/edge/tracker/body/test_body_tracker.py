@@ -155,7 +155,7 @@ def test_motion_without_steps_widens_what_is_stated():
 
 
 def test_way_back_is_known_better_than_way_out():
-    """What the length is off by cancels where it began."""
+    """The error of the length cancels at the start."""
     half_turn = still(1.0, np.pi)
     out = tracked(imu(still(5.0), steps(40)))
     back = tracked(imu(still(5.0), steps(40), half_turn, steps(40, rate_z_radps=0.0)))

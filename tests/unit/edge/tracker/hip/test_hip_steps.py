@@ -20,7 +20,7 @@ def tracked(imu, config=None):
 
 
 def heading_rad(rows, from_s, to_s):
-    """Of the way between two times."""
+    """Heading of the path between two times."""
     t_s = rows.t_ns * 1e-9
     first, last = (rows.position_n_m[np.searchsorted(t_s, at)] for at in (from_s, to_s))
     return np.arctan2(*(last - first)[[1, 0]])

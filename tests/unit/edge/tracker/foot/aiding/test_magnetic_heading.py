@@ -37,7 +37,7 @@ def run(description, imu, cuts=()):
 
 
 def heading_errors_rad(rows, truth, every=200):
-    """How the heading has drifted against the first row."""
+    """Drift of the heading since the first row."""
     angles = []
     rotation = np.zeros((3, 3))
     for k in range(0, len(rows), every):
@@ -143,7 +143,7 @@ def test_the_row_is_the_derivative_of_the_model(axis):
     component_row(compass, hypothesis, axis, EskfConfig())
 
     def component(states):
-        """What is seen when the states are these, by the attitude as it is estimated."""
+        """Predicted measurement for these states, by the estimated attitude."""
         true = attitude.copy()
         rotate_navigation(true, 0.0, 0.0, states[0])
         true_nb = np.zeros((3, 3))

@@ -20,7 +20,7 @@ EARTH = EarthField(DECLINATION_RAD, 0.007, float(np.hypot(1.48, 16.07)), 48.56, 
 
 
 def north_errors_rad(seed, bend=None, earth=EARTH, left_ut=0.5):
-    """How far magnetic north is off where it is said, and by how much that is said to be."""
+    """Error of the reported magnetic north, and its stated deviation."""
     description, imu, truth = searched(seed)
     imu = replace(imu, mag_ut=calibrated_ut(seed))
     if bend is not None:
@@ -41,7 +41,7 @@ def north_errors_rad(seed, bend=None, earth=EARTH, left_ut=0.5):
 
 @cache
 def calibrated_ut(seed):
-    """What a magnetometer without iron or scale says, noise apart."""
+    """Noise-free reading of a magnetometer without iron or scale errors."""
     _, imu, truth = searched(seed)
     field_n_ut = np.array([16.07, 1.48, 48.56])
     noise = np.random.default_rng(seed).normal(0.0, 0.4, (len(imu), 3))
