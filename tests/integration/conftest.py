@@ -10,12 +10,14 @@ import pytest
 import pytest_asyncio
 
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.store import Store
 from shared.clock import ManualClock
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 from tests.rig.erasure_folders import split_log
 from tests.rig.erasure_scenario import Story
 from tests.rig.station_command import Command, Unit
 from tests.rig.station_process import free_port
+from tests.rig.table_side import TableSide
 
 
 @pytest.fixture
@@ -34,6 +36,15 @@ async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
         answer = await client.post("/login", json=credentials)
         assert answer.status_code == 200, answer.text
         yield client
+
+
+@pytest.fixture
+def sides(tmp_path: Path) -> Iterator[tuple[TableSide, TableSide]]:
+    folders = [tmp_path / name for name in ("active", "standby")]
+    for folder in folders:
+        folder.mkdir()
+    with Store(folders[0] / "s.sqlite") as one, Store(folders[1] / "s.sqlite") as other:
+        yield TableSide(folders[0], one), TableSide(folders[1], other)
 
 
 @pytest.fixture
