@@ -22,7 +22,7 @@ from rich.table import Table
 from base_station.security.pki.folder import PkiFolder
 from shared.bench_figures import FiguresFile, write_figures
 from tests.rig.database_server import DatabaseServer, database_server
-from tests.rig.department_roof import ReportingStation, Roof
+from tests.rig.department_network import DepartmentNetwork, ReportingStation
 from tests.rig.latency import Latency
 from tests.rig.link_forwarder import Conditions
 from tests.rig.lossy_link import CLEAN, DARK
@@ -68,7 +68,7 @@ class Faults:
             f'database = "{address.url}"\ndatabase_password_file = "{address.password_file}"\n'
         )
         self._folder = folder
-        self.roof = Roof(folder, closing, launch, _SEED, settings)
+        self.roof = DepartmentNetwork(folder, closing, launch, _SEED, settings)
         self.strangers: list[ReportingStation] = []  # of another department
         for name, before in (("engine-7", ""), ("engine-8", ""), ("engine-9", _AHEAD)):
             self.roof.add_station(name).start(before)

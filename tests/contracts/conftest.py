@@ -11,7 +11,7 @@ import pytest
 from base_station.storage.db.database import Database
 from base_station.storage.db.server_store import ServerStore
 from base_station.storage.db.store import Store
-from tests.rig.bus_ends import Ends, Fabric, MemoryFabric, ZenohFabric
+from tests.rig.bus_ends import BusEnds, Fabric, MemoryFabric, ZenohFabric
 from tests.rig.database_server import DatabaseServer, database_server
 
 DATABASE_KINDS = ("file", "server")
@@ -19,11 +19,11 @@ NewDatabase = Callable[[], Database]
 
 
 @pytest.fixture(params=["memory", "zenoh"])
-def ends(request: pytest.FixtureRequest) -> Iterator[Ends]:
+def ends(request: pytest.FixtureRequest) -> Iterator[BusEnds]:
     with ExitStack() as stack:
         fabric: Fabric = MemoryFabric() if request.param == "memory" else ZenohFabric(stack)
         station = fabric.station()
-        yield Ends(station, fabric.unit(), fabric)
+        yield BusEnds(station, fabric.unit(), fabric)
 
 
 @pytest.fixture(scope="session")

@@ -10,15 +10,15 @@ import pytest
 
 from shared.channels import POSITION, Qos
 from shared.errors import BusError
-from tests.rig.bus_ends import Ends, Heard, publish_until_received
+from tests.rig.bus_ends import BusEnds, ReceivedMessages, publish_until_received
 from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 
 
 @pytest.mark.parametrize("qos", [Qos.LIVE, Qos.ALERT])
-def test_messages_arrive_once_complete_and_in_order(ends: Ends, qos: Qos) -> None:
-    received = Heard()
+def test_messages_arrive_once_complete_and_in_order(ends: BusEnds, qos: Qos) -> None:
+    received = ReceivedMessages()
     ends.station.subscribe("muster/v1/*/up/**", received)
     publish_until_received(ends.unit, KEY, received)
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
@@ -30,8 +30,8 @@ def test_messages_arrive_once_complete_and_in_order(ends: Ends, qos: Qos) -> Non
     assert received.samples == sent
 
 
-def test_the_station_reaches_a_unit(ends: Ends) -> None:
-    received = Heard()
+def test_the_station_reaches_a_unit(ends: BusEnds) -> None:
+    received = ReceivedMessages()
     ends.unit.subscribe("muster/v1/anna/command/**", received)
     publish_until_received(ends.station, "muster/v1/anna/command/send", received)
     ends.station.publish("muster/v1/ben/command/send", b"not hers", Qos.ALERT)
@@ -40,8 +40,8 @@ def test_the_station_reaches_a_unit(ends: Ends) -> None:
     assert received.samples == [("muster/v1/anna/command/send", b"evacuate")]
 
 
-def test_local_key_is_not_delivered_to_its_publisher(ends: Ends) -> None:
-    own, at_station = Heard(), Heard()
+def test_local_key_is_not_delivered_to_its_publisher(ends: BusEnds) -> None:
+    own, at_station = ReceivedMessages(), ReceivedMessages()
     ends.unit.subscribe(KEY, own)
     ends.station.subscribe(KEY, at_station)
     publish_until_received(ends.unit, KEY, at_station)
@@ -53,9 +53,9 @@ def test_local_key_is_not_delivered_to_its_publisher(ends: Ends) -> None:
     assert [payload for _, payload in at_station.samples] == [b"for others", b"for all"]
 
 
-def test_units_do_not_receive_each_other(ends: Ends) -> None:
+def test_units_do_not_receive_each_other(ends: BusEnds) -> None:
     ben = ends.fabric.unit()
-    at_station, at_ben = Heard(), Heard()
+    at_station, at_ben = ReceivedMessages(), ReceivedMessages()
     ends.station.subscribe("muster/v1/**", at_station)
     ben.subscribe("muster/v1/**", at_ben)
     publish_until_received(ends.station, "muster/v1/all/command/send", at_ben)
@@ -79,8 +79,8 @@ def test_units_do_not_receive_each_other(ends: Ends) -> None:
         ("*/up/position", False),
     ],
 )
-def test_key_expressions_select_as_in_zenoh(ends: Ends, expression: str, matches: bool) -> None:
-    selected, everything = Heard(), Heard()
+def test_key_expressions_select_as_in_zenoh(ends: BusEnds, expression: str, matches: bool) -> None:
+    selected, everything = ReceivedMessages(), ReceivedMessages()
     ends.station.subscribe(expression, selected)
     ends.station.subscribe("muster/v1/*/up/*", everything)
     publish_until_received(ends.unit, KEY, everything)
@@ -88,8 +88,8 @@ def test_key_expressions_select_as_in_zenoh(ends: Ends, expression: str, matches
     assert bool(selected.samples) is matches
 
 
-def test_after_close_a_subscription_receives_nothing(ends: Ends) -> None:
-    closed, still_open = Heard(), Heard()
+def test_after_close_a_subscription_receives_nothing(ends: BusEnds) -> None:
+    closed, still_open = ReceivedMessages(), ReceivedMessages()
     subscription = ends.station.subscribe("muster/v1/**", closed)
     ends.station.subscribe("muster/v1/**", still_open)
     publish_until_received(ends.unit, KEY, still_open)
@@ -100,7 +100,7 @@ def test_after_close_a_subscription_receives_nothing(ends: Ends) -> None:
     assert closed.samples == []
 
 
-def test_closing_waits_for_a_call_under_way(ends: Ends) -> None:
+def test_closing_waits_for_a_call_under_way(ends: BusEnds) -> None:
     entered, leave = Event(), Event()
     calls: list[str] = []
 
@@ -123,9 +123,9 @@ def test_closing_waits_for_a_call_under_way(ends: Ends) -> None:
 
 
 def test_a_failing_handler_is_logged_once_and_stops_nothing(
-    ends: Ends, caplog: pytest.LogCaptureFixture
+    ends: BusEnds, caplog: pytest.LogCaptureFixture
 ) -> None:
-    received = Heard()
+    received = ReceivedMessages()
     failed: list[str] = []
 
     def failing(key: str, payload: bytes) -> None:
@@ -143,31 +143,31 @@ def test_a_failing_handler_is_logged_once_and_stops_nothing(
 
 
 @pytest.mark.parametrize("key", ["a//b", "/a", "a/", "a/*", "a/**", "a?b", "a#b", ""])
-def test_key_that_cannot_be_published_under_is_refused(ends: Ends, key: str) -> None:
+def test_key_that_cannot_be_published_under_is_refused(ends: BusEnds, key: str) -> None:
     with pytest.raises(BusError, match="not a key"):
         ends.unit.publish(key, b"", Qos.LIVE)
 
 
 @pytest.mark.parametrize("expression", ["a//b", "", "a/b*", "a?b"])
-def test_key_expression_that_selects_nothing_is_refused(ends: Ends, expression: str) -> None:
+def test_key_expression_that_selects_nothing_is_refused(ends: BusEnds, expression: str) -> None:
     with pytest.raises(BusError, match="not a key expression"):
-        ends.unit.subscribe(expression, Heard())
+        ends.unit.subscribe(expression, ReceivedMessages())
 
 
-def test_local_messages_of_the_station_never_travel(ends: Ends) -> None:
+def test_local_messages_of_the_station_never_travel(ends: BusEnds) -> None:
     with pytest.raises(BusError, match="never travels"):
         ends.unit.publish("muster/v1/station/tick", b"", Qos.LOCAL)
 
 
-def test_closed_bus_raises(ends: Ends) -> None:
+def test_closed_bus_raises(ends: BusEnds) -> None:
     ends.unit.close()
     with pytest.raises(BusError, match="closed"):
         ends.unit.publish(KEY, b"", Qos.LIVE)
     ends.unit.close()
 
 
-def test_a_handler_may_close_its_own_subscription(ends: Ends) -> None:
-    received, once = Heard(), Heard()
+def test_a_handler_may_close_its_own_subscription(ends: BusEnds) -> None:
+    received, once = ReceivedMessages(), ReceivedMessages()
 
     def close_after_one(key: str, payload: bytes) -> None:
         once(key, payload)

@@ -8,14 +8,14 @@ from collections.abc import Iterable
 import pytest
 
 from shared.channels import POSITION, alive_key
-from tests.rig.bus_ends import Ends, Heard
+from tests.rig.bus_ends import BusEnds, ReceivedMessages
 from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 ALIVE = alive_key("anna")
 
 
-def test_tokens_appear_and_vanish(ends: Ends) -> None:
+def test_tokens_appear_and_vanish(ends: BusEnds) -> None:
     reported: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: reported.append((key, alive)))
     token = ends.unit.declare_alive(ALIVE)
@@ -24,7 +24,7 @@ def test_tokens_appear_and_vanish(ends: Ends) -> None:
     until(lambda: reported == [(ALIVE, True), (ALIVE, False)], "the end of the token")
 
 
-def test_late_watcher_receives_existing_tokens(ends: Ends) -> None:
+def test_late_watcher_receives_existing_tokens(ends: BusEnds) -> None:
     early: list[str] = []
     late: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, _: early.append(key))
@@ -34,7 +34,7 @@ def test_late_watcher_receives_existing_tokens(ends: Ends) -> None:
     until(lambda: late == [(ALIVE, True)], "the token that was there")
 
 
-def test_token_ends_when_its_unit_closes(ends: Ends) -> None:
+def test_token_ends_when_its_unit_closes(ends: BusEnds) -> None:
     reported: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: reported.append((key, alive)))
     _token = ends.unit.declare_alive(ALIVE)
@@ -43,7 +43,7 @@ def test_token_ends_when_its_unit_closes(ends: Ends) -> None:
     until(lambda: reported == [(ALIVE, True), (ALIVE, False)], "the end of the token")
 
 
-def test_queries_are_answered_in_order(ends: Ends) -> None:
+def test_queries_are_answered_in_order(ends: BusEnds) -> None:
     asked: list[tuple[str, str, bytes]] = []
 
     def journal(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
@@ -62,12 +62,14 @@ def test_queries_are_answered_in_order(ends: Ends) -> None:
     assert asked[-1] == ("muster/v1/anna/journal", "from=1;to=9", b"why")
 
 
-def test_query_without_answerer_yields_nothing(ends: Ends) -> None:
+def test_query_without_answerer_yields_nothing(ends: BusEnds) -> None:
     assert list(ends.station.query("muster/v1/nobody/journal", b"", 0.5)) == []
 
 
 @pytest.mark.parametrize("urgent", [False, True])
-def test_asynchronous_query_is_answered_in_order_and_ended_once(ends: Ends, urgent: bool) -> None:
+def test_asynchronous_query_is_answered_in_order_and_ended_once(
+    ends: BusEnds, urgent: bool
+) -> None:
     ends.unit.serve("muster/v1/anna/journal", lambda *_: (b"%d" % n for n in range(100)))
     received: list[bytes | None] = []
 
@@ -81,7 +83,7 @@ def test_asynchronous_query_is_answered_in_order_and_ended_once(ends: Ends, urge
     assert received == [*(b"%d" % n for n in range(100)), None]
 
 
-def test_unanswered_asynchronous_query_ends(ends: Ends) -> None:
+def test_unanswered_asynchronous_query_ends(ends: BusEnds) -> None:
     received: list[bytes | None] = []
     ends.station.ask("muster/v1/nobody/journal", b"", 0.5, received.append)
     until(lambda: bool(received), "the end of the replies")
@@ -89,7 +91,7 @@ def test_unanswered_asynchronous_query_ends(ends: Ends) -> None:
 
 
 def test_failing_query_handler_answers_nothing(
-    ends: Ends, caplog: pytest.LogCaptureFixture
+    ends: BusEnds, caplog: pytest.LogCaptureFixture
 ) -> None:
     def failing(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
         yield b"first"
@@ -108,10 +110,10 @@ def test_failing_query_handler_answers_nothing(
     assert len(caplog.records) == 1
 
 
-def test_publisher_detects_other_subscribers(ends: Ends) -> None:
-    ends.unit.subscribe("muster/v1/anna/command/**", Heard())
+def test_publisher_detects_other_subscribers(ends: BusEnds) -> None:
+    ends.unit.subscribe("muster/v1/anna/command/**", ReceivedMessages())
     assert not ends.unit.has_subscriber(KEY)
-    listening = ends.station.subscribe("muster/v1/*/up/**", Heard())
+    listening = ends.station.subscribe("muster/v1/*/up/**", ReceivedMessages())
     until(lambda: ends.unit.has_subscriber(KEY), "the station's interest")
     assert not ends.unit.has_subscriber(ALIVE)
     listening.close()
@@ -120,7 +122,7 @@ def test_publisher_detects_other_subscribers(ends: Ends) -> None:
     assert not ends.unit.has_subscriber(KEY)
 
 
-def test_linked_end_reports_its_link_until_it_closes(ends: Ends) -> None:
+def test_linked_end_reports_its_link_until_it_closes(ends: BusEnds) -> None:
     assert ends.unit.is_linked()
     assert ends.station.is_linked()
     ends.unit.close()

@@ -16,19 +16,19 @@ from edge.sources.gnss.reader import GnssReader
 from edge.sources.gnss.registry import RECEIVERS, open_receiver
 from shared.clock import ManualClock, SystemClock
 from shared.errors import ConfigError
-from tests.rig.gps_receiver import NAN, GpsdServer, Reported, burst, gpsd_report
+from tests.rig.gps_receiver import NAN, GpsdServer, ReportedFix, burst, gpsd_report
 from tests.rig.waiting import PATIENCE_S, until
 from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
 Device = GpsdServer | TcpDevice | PtyDevice
-Saying = Callable[[Reported], bytes]
+Saying = Callable[[ReportedFix], bytes]
 # For each kind: its emulation, a fix in its protocol, and its name.
 PRETENDED: dict[str, tuple[Callable[[Iterable[bytes]], Device], Saying]] = {
     "gpsd": (lambda stated: GpsdServer(stated, hangs=True), gpsd_report),
     "nmea on TCP": (lambda stated: TcpDevice(stated, hangs=True), burst),
     "nmea on a serial port": (PtyDevice, burst),
 }
-HERE = Reported()
+HERE = ReportedFix()
 LATER = replace(HERE, of_day_s=HERE.of_day_s + 1.0)
 NO_FIX = replace(HERE, mode=1, quality=0, lat_deg=NAN, lon_deg=NAN, height_m=NAN, satellites=0)
 
@@ -42,7 +42,7 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
     make, saying = PRETENDED[request.param]
     opened: list[tuple[Device, GnssReader]] = []
 
-    def received(*reported: Reported, held_s: float = 0.0) -> list[GpsSample]:
+    def received(*reported: ReportedFix, held_s: float = 0.0) -> list[GpsSample]:
         clock, first_is_received = ManualClock(), Event()
 
         def stated() -> Iterator[bytes]:

@@ -28,7 +28,7 @@ LENGTH_TOLERANCE = {"body": 0.13}
 
 
 @dataclass(frozen=True)
-class Worn:
+class WornSamples:
     """Samples of five strides straight on at a tracker's place on the body."""
 
     description: SensorDescription
@@ -41,11 +41,11 @@ class Worn:
 def worn(part):
     if part == FOOT:
         feet = walk(strides=5)
-        return Worn(feet.description, feet.imu, 5 * 1.3, 0.1)
+        return WornSamples(feet.description, feet.imu, 5 * 1.3, 0.1)
     simulation = Simulation(msgspec.structs.replace(SHORT, worn_on=part), seed=0)
     (batch,) = simulation.batches(simulation.duration_s)
     imu = ImuBatch(batch.imu.t_ns, batch.imu.accel_mps2, batch.imu.gyro_radps)
-    return Worn(simulation.description, imu, 6.8, 0.15)  # one step more or less
+    return WornSamples(simulation.description, imu, 6.8, 0.15)  # one step more or less
 
 
 @pytest.fixture(params=[entry.name for entry in TRACKERS])

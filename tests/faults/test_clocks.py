@@ -43,7 +43,7 @@ class SetClock:
         return self._mono_ns + self._utc_offset_ns
 
 
-class HaController:
+class UnitAndStation:
     """A unit and a station, with a link between them that queues now this way, now that."""
 
     def __init__(self, drift: float = 0.0, seed: int = 1, queue_s: float = 0.0) -> None:
@@ -82,7 +82,7 @@ class HaController:
 
 
 def test_clock_without_an_answer_keeps_the_machines_time() -> None:
-    pair = HaController()
+    pair = UnitAndStation()
     pair.linked = False
     pair.run(30.0)
     assert pair.clock.utc_std_s() == 0.0
@@ -90,7 +90,7 @@ def test_clock_without_an_answer_keeps_the_machines_time() -> None:
 
 
 def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
-    pair = HaController()
+    pair = UnitAndStation()
     pair.run(30.0)
     assert abs(pair.error_s()) < 0.005
     assert pair.clock.machine_ahead_s() == pytest.approx(-7 * DAY_S, abs=0.01)
@@ -101,7 +101,7 @@ def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
 
 @pytest.mark.parametrize("drift", [-4e-5, 0.0, 4e-5])
 def test_drift_is_estimated_and_applied_during_an_outage(drift: float) -> None:
-    pair = HaController(drift, queue_s=0.002)
+    pair = UnitAndStation(drift, queue_s=0.002)
     pair.run(1200.0)
     estimate = pair.clock.estimate()
     assert estimate is not None
@@ -115,7 +115,7 @@ def test_stated_uncertainty_covers_errors_of_queueing_links() -> None:
     """Errors in standard deviations, over many units at a random time each."""
     squares = []
     for seed in range(60):
-        pair = HaController(random.Random(seed).gauss(0.0, 2e-5), seed, queue_s=0.2)
+        pair = UnitAndStation(random.Random(seed).gauss(0.0, 2e-5), seed, queue_s=0.2)
         pair.run(5.0 + 300.0 * random.Random(-seed).random())
         squares.append((pair.error_s() / pair.clock.utc_std_s()) ** 2)
     assert sum(squares) / len(squares) < 1.5
@@ -144,7 +144,7 @@ def test_impossible_exchanges_are_not_used() -> None:
 
 
 def test_the_unit_follows_a_station_whose_clock_is_set_forward_by_a_day() -> None:
-    pair = HaController()
+    pair = UnitAndStation()
     pair.run(60.0)
     pair.station_machine.set_utc_ahead(DAY_S)
     pair.run(60.0)
@@ -152,7 +152,7 @@ def test_the_unit_follows_a_station_whose_clock_is_set_forward_by_a_day() -> Non
 
 
 def test_station_and_unit_continue_after_the_stations_clock_is_set_back() -> None:
-    pair = HaController()
+    pair = UnitAndStation()
     pair.run(60.0)
     stamps_ns = []
     pair.station_machine.set_utc_ahead(-DAY_S)
@@ -165,7 +165,7 @@ def test_station_and_unit_continue_after_the_stations_clock_is_set_back() -> Non
 
 @pytest.mark.parametrize("by_s", [DAY_S, -DAY_S])
 def test_unit_whose_own_clock_is_set_continues_in_the_stations_time(by_s: float) -> None:
-    pair = HaController()
+    pair = UnitAndStation()
     pair.run(30.0)
     stamper = Stamper(U, 1, pair.clock, pair.clock.utc_std_s)
     before = stamper.header()

@@ -35,7 +35,7 @@ def walk() -> np.ndarray:
     )
 
 
-class Nobody:
+class UnusedStationLink:
     def open_bus(self) -> Bus:
         return MemoryRouter().attach_unit()
 
@@ -57,7 +57,7 @@ def run_agent_on(rows: np.ndarray, folder: Path):
     config = EdgeConfig(unit="u1", source=f"recording:{recording}", data=folder)
     data = UnitDataFolder(folder / "u1")
     source = open_source(config.source)
-    agent = compose_agent(config, "u1", data, source, Nobody(), speed=None)
+    agent = compose_agent(config, "u1", data, source, UnusedStationLink(), speed=None)
     journal = agent._parts.journal
     read = journal.close
     sent: list[tuple[str, bytes]] = []

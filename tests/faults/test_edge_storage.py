@@ -79,7 +79,7 @@ class Station:
         ]
 
 
-class Running:
+class AgentThread:
     """An agent in a thread, with its insides at hand."""
 
     def __init__(self, folder: Path) -> None:
@@ -111,12 +111,12 @@ class Running:
 
 @pytest.fixture
 def running(tmp_path):
-    running = Running(tmp_path)
+    running = AgentThread(tmp_path)
     yield running
     running.end()
 
 
-def set_room(running: Running, pages: int) -> None:
+def set_room(running: AgentThread, pages: int) -> None:
     """Limits the size of the journal's file, like a full disk."""
     journal = running.parts.journal
     with journal._lock:
@@ -230,7 +230,7 @@ def fill(disk: Path) -> None:
 
 
 def started_before(disk: Path) -> None:
-    running = Running(disk)
+    running = AgentThread(disk)
     until(lambda: running.parts.journal.last_seq > 20)
     running.end()
 
@@ -244,7 +244,7 @@ def test_a_unit_that_is_started_with_a_full_disk_is_received(
     else:
         (disk / "u1").mkdir()
     fill(disk)
-    running = Running(disk)
+    running = AgentThread(disk)
     try:
         assert_reported_and_made_good(running, (disk / "filler").unlink)
     finally:
@@ -262,7 +262,7 @@ def test_disk_full_of_old_recordings_keeps_the_journal(disk: Path) -> None:
         with segment.open("ab") as file:
             file.write(bytes(1_000_000))
     fill(disk)
-    running = Running(disk)
+    running = AgentThread(disk)
     try:
         until(lambda: (disk / "u1" / "journal.sqlite-wal").stat().st_size > 0)
         journal = running.parts.journal
@@ -278,7 +278,7 @@ def test_disk_full_of_old_recordings_keeps_the_journal(disk: Path) -> None:
 def test_unit_with_a_read_only_disk_is_received(disk: Path) -> None:
     started_before(disk)
     remount(disk, "ro")
-    running = Running(disk)
+    running = AgentThread(disk)
     try:
         assert_reported_and_made_good(running, lambda: remount(disk, "rw"))
     finally:
@@ -286,7 +286,7 @@ def test_unit_with_a_read_only_disk_is_received(disk: Path) -> None:
 
 
 def test_unit_with_a_hanging_disk_is_received(freezing_disk: Path) -> None:
-    running = Running(freezing_disk)
+    running = AgentThread(freezing_disk)
     freeze(freezing_disk)
     try:
         assert_reported_and_made_good(running, lambda: thaw(freezing_disk))
@@ -300,7 +300,7 @@ def test_unit_with_a_hanging_disk_stops_on_request(
     freezing_disk: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Its service would kill it in the end, and the station would never hear that it was meant."""
-    running = Running(freezing_disk)
+    running = AgentThread(freezing_disk)
     with frozen(freezing_disk):
         until(running.station.faults)
         assert running.ends_within(ENDING_S)
@@ -311,7 +311,7 @@ def test_unit_with_a_hanging_disk_stops_on_request(
 
 
 def test_messages_waiting_for_the_disk_at_shutdown_are_saved(freezing_disk: Path) -> None:
-    running = Running(freezing_disk)
+    running = AgentThread(freezing_disk)
     with frozen(freezing_disk):
         time.sleep(1.5)
         running.ordered_to_stop()
@@ -329,7 +329,7 @@ def test_messages_waiting_for_the_disk_at_shutdown_are_saved(freezing_disk: Path
     assert last.kind is EventKind.STOPPED
 
 
-def assert_reported_and_made_good(running: Running, mend: Callable[[], object]) -> None:
+def assert_reported_and_made_good(running: AgentThread, mend: Callable[[], object]) -> None:
     until(running.station.faults)
     before = running.station.count(Position)
     until(lambda: running.station.count(Position) > before + 20)

@@ -21,9 +21,9 @@ from edge.sources.gnss.registry import open_receiver
 from shared.clock import SystemClock
 from tests.rig.gps_receiver import (
     DEVICE,
+    AcceleratedClock,
     GpsdServer,
-    Hasty,
-    Reported,
+    ReportedFix,
     burst,
     gga,
     gpsd_report,
@@ -33,18 +33,20 @@ from tests.rig.gps_receiver import (
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
-HERE = Reported()
+HERE = ReportedFix()
 Device = GpsdServer | TcpDevice | PtyDevice
 OneDevice = TypeVar("OneDevice", GpsdServer, TcpDevice, PtyDevice)
 MANY = [replace(HERE, of_day_s=HERE.of_day_s + k) for k in range(40)]
 NOISE = np.random.default_rng(2).bytes(3000)
 
 
-class Heard:
+class ReceiverOutput:
     """Fixes and faults that a unit takes from a receiver."""
 
     def __init__(self, text: str, hasty: bool) -> None:
-        self.reader: GnssReader = open_receiver(text, Hasty() if hasty else SystemClock())
+        self.reader: GnssReader = open_receiver(
+            text, AcceleratedClock() if hasty else SystemClock()
+        )
         self._fixes: list[GpsSample] = []
         self._faults: list[str] = []
         self.reader.start()
@@ -66,25 +68,25 @@ class Heard:
         until(lambda: len(self.fixes) >= count, f"{count} fixes")
 
 
-class Ears:
+class ReceiverOutputs:
     """Devices are closed after those who listen to them."""
 
     def __init__(self) -> None:
-        self.listening: list[Heard] = []
+        self.listening: list[ReceiverOutput] = []
         self.pretended: list[Device] = []
 
     def pretend(self, device: OneDevice) -> OneDevice:
         self.pretended.append(device)
         return device
 
-    def __call__(self, text: str, hasty: bool = False) -> Heard:
-        self.listening.append(Heard(text, hasty))
+    def __call__(self, text: str, hasty: bool = False) -> ReceiverOutput:
+        self.listening.append(ReceiverOutput(text, hasty))
         return self.listening[-1]
 
 
 @pytest.fixture
-def receive() -> Iterator[Ears]:
-    ears = Ears()
+def receive() -> Iterator[ReceiverOutputs]:
+    ears = ReceiverOutputs()
     yield ears
     for received in ears.listening:
         received.reader.close()
@@ -93,7 +95,9 @@ def receive() -> Iterator[Ears]:
         device.close()
 
 
-def test_incomplete_lines_and_noise_lose_only_the_affected_sentences(receive: Ears) -> None:
+def test_incomplete_lines_and_noise_lose_only_the_affected_sentences(
+    receive: ReceiverOutputs,
+) -> None:
     """Eleven bursts: half of the first one, one of which a byte is wrong, noise between."""
     first, *others = map(burst, MANY[:11])
     others[4] = others[4].replace(b"5742", b"5743", 1)
@@ -108,7 +112,7 @@ def test_incomplete_lines_and_noise_lose_only_the_affected_sentences(receive: Ea
     assert received.faults == []
 
 
-def test_line_with_many_errors_is_reported(receive: Ears) -> None:
+def test_line_with_many_errors_is_reported(receive: ReceiverOutputs) -> None:
     def stated() -> Iterator[bytes]:
         for reported in MANY:
             time.sleep(0.05)  # a second, at the hasty clock's pace
@@ -120,7 +124,7 @@ def test_line_with_many_errors_is_reported(receive: Ears) -> None:
     )
 
 
-def test_missing_receiver_is_awaited(receive: Ears) -> None:
+def test_missing_receiver_is_awaited(receive: ReceiverOutputs) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     received = receive(f"gpsd://127.0.0.1:{port}")
@@ -131,7 +135,7 @@ def test_missing_receiver_is_awaited(receive: Ears) -> None:
     assert len([fault for fault in received.faults if "refused" in fault]) == 1
 
 
-def test_restart_of_gpsd_is_reported_and_reconnected(receive: Ears) -> None:
+def test_restart_of_gpsd_is_reported_and_reconnected(receive: ReceiverOutputs) -> None:
     sessions = [gpsd_report(MANY[0])], [gpsd_report(MANY[5])]
     server = receive.pretend(GpsdServer(*sessions))
     received = receive(f"gpsd:{server.source}")
@@ -159,7 +163,7 @@ STUCK = [gga(HERE)] * 20
     ids=["nothing", "noise", "binary", "others", "stuck", "silent"],
 )
 def test_a_line_without_fixes_is_reported_and_opened_again(
-    receive: Ears, stated: Iterable[bytes], reported: str
+    receive: ReceiverOutputs, stated: Iterable[bytes], reported: str
 ) -> None:
     again = replace(HERE, of_day_s=HERE.of_day_s + 60.0)
     device = receive.pretend(TcpDevice(stated, [burst(again)], hangs=True))
@@ -179,7 +183,7 @@ def test_a_line_without_fixes_is_reported_and_opened_again(
     ids=["no device", "silent device", "unplugged", "odd words"],
 )
 def test_gpsd_without_a_receiver_is_reported(
-    receive: Ears, devices: tuple[str, ...], stated: Iterable[bytes], reported: str
+    receive: ReceiverOutputs, devices: tuple[str, ...], stated: Iterable[bytes], reported: str
 ) -> None:
     server = receive.pretend(GpsdServer(stated, [gpsd_report(HERE)], devices=devices, hangs=True))
     received = receive(f"gpsd:{server.source}", hasty=True)
@@ -187,7 +191,7 @@ def test_gpsd_without_a_receiver_is_reported(
     received.has(1)
 
 
-def test_server_that_is_no_gpsd_is_reported(receive: Ears) -> None:
+def test_server_that_is_no_gpsd_is_reported(receive: ReceiverOutputs) -> None:
     server = receive.pretend(TcpDevice([b"SSH-2.0-OpenSSH_9.6\r\n"]))
     receive(f"gpsd://127.0.0.1:{server.port}").receives("is this the port of gpsd")
     with socket.create_server(("127.0.0.1", 0)) as silent:
@@ -197,12 +201,12 @@ def test_server_that_is_no_gpsd_is_reported(receive: Ears) -> None:
         )
 
 
-def test_wrong_baud_rate_is_reported_as_unreadable(receive: Ears) -> None:
+def test_wrong_baud_rate_is_reported_as_unreadable(receive: ReceiverOutputs) -> None:
     device = receive.pretend(PtyDevice([NOISE]))
     receive(f"nmea:{device.source}?baud=38400", hasty=True).receives("?baud= right")
 
 
-def test_unplugged_cable_is_reported(receive: Ears) -> None:
+def test_unplugged_cable_is_reported(receive: ReceiverOutputs) -> None:
     device = receive.pretend(PtyDevice(map(burst, MANY[:3])))
     received = receive(f"nmea:{device.source}")
     received.has(3)
@@ -210,7 +214,7 @@ def test_unplugged_cable_is_reported(receive: Ears) -> None:
     received.receives("no fixes: it went away; is the cable in")
 
 
-def test_replugged_receiver_is_reopened(receive: Ears, tmp_path: Path) -> None:
+def test_replugged_receiver_is_reopened(receive: ReceiverOutputs, tmp_path: Path) -> None:
     """As udev names it: the same name for another terminal."""
     name = tmp_path / "gps"
     received = None
@@ -224,7 +228,9 @@ def test_replugged_receiver_is_reopened(receive: Ears, tmp_path: Path) -> None:
         device.close()
 
 
-def test_device_that_is_no_serial_port_is_reported(receive: Ears, tmp_path: Path) -> None:
+def test_device_that_is_no_serial_port_is_reported(
+    receive: ReceiverOutputs, tmp_path: Path
+) -> None:
     plain = tmp_path / "file"
     plain.write_bytes(burst(HERE))
     receive(f"nmea:{plain}").receives("it is no serial port")

@@ -58,7 +58,7 @@ QUIET_TURNS = 60  # at the end: 3 s in which health is told
 UNITS = ("FF-01", "FF-02", "stranger")
 
 
-class Said:
+class MutatedFeed:
     """A ``Feed`` of mutated messages, with time going on."""
 
     follows = False
@@ -109,7 +109,7 @@ class Said:
                 return channel.key(unit_id)
 
 
-class Written:
+class CountingLog:
     """A ``Log`` that counts, and keeps the records if it is to."""
 
     problem = little_room = ""
@@ -149,7 +149,7 @@ def any_boot(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.timeout(1800)  # a million, beside all other tests
 def test_mutated_messages_are_logged_and_counted(tmp_path: Path) -> None:
-    log, screen, pipeline = Written(keeps=False), Screen(), make_pipeline()
+    log, screen, pipeline = CountingLog(keeps=False), Screen(), make_pipeline()
     feed = say(COUNT, log, screen, pipeline, tmp_path)
     state = pipeline.state
     own_mistakes = {"station|drive", "station|pipeline"} & set(state.alarms)
@@ -161,16 +161,18 @@ def test_mutated_messages_are_logged_and_counted(tmp_path: Path) -> None:
 
 
 def test_replay_of_mutated_messages_makes_the_same_decisions(tmp_path: Path) -> None:
-    log = Written(keeps=True)
+    log = CountingLog(keeps=True)
     say(FEWER, log, Screen(), make_pipeline(), tmp_path)
     assert len(log.records) > FEWER / 2
     assert list(compare(log.records, make_pipeline())) == []
 
 
-def say(count: int, log: Written, screen: Screen, pipeline: StationPipeline, folder: Path) -> Said:
+def say(
+    count: int, log: CountingLog, screen: Screen, pipeline: StationPipeline, folder: Path
+) -> MutatedFeed:
     """To a station; returns when it has heard all."""
     clock = ManualClock()
-    feed = Said(clock, 4, count)
+    feed = MutatedFeed(clock, 4, count)
     drive = StationEngine(pipeline, ports_of(feed, log, screen, folder, clock))
     registered = drive.submit("chief", RegisterUnit("FF-01", "one"))
     drive.start()

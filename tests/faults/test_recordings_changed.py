@@ -10,13 +10,13 @@ import pytest
 
 from base_station.unit_sync.recordings import transfer as fetching
 from base_station.unit_sync.recordings.transfer import TransferState
-from tests.rig.changing_recordings import TellingUnit, listed, pulled
+from tests.rig.changing_recordings import RecordingsUnit, listed, pulled
 from tests.rig.recorded_unit import U, finish
 
 
 def test_shortened_file_is_pulled_at_its_current_length(tmp_path: Path) -> None:
     """Its power was lost, and it mended what it had recorded."""
-    unit = TellingUnit(a=b"recorded" * 300)
+    unit = RecordingsUnit(a=b"recorded" * 300)
 
     def lose(question: str) -> None:
         if "offset=1024" in question:
@@ -32,7 +32,7 @@ def test_restarted_transfer_counts_no_file_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files = {"a": b"a" * 500, "b": b"b" * 5000}
-    unit = TellingUnit(**files)
+    unit = RecordingsUnit(**files)
     fetch = unit.pull(tmp_path)
 
     def give_up(question: str) -> None:
@@ -46,7 +46,7 @@ def test_restarted_transfer_counts_no_file_twice(
         patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
         fetch.step()
     assert fetch.state is TransferState.WAITING
-    unit.files = TellingUnit(**files).files
+    unit.files = RecordingsUnit(**files).files
     fetch = finish(fetch)
     assert fetch.state is TransferState.DONE
     assert fetch.problem.startswith("1 of 2 files came whole")
@@ -55,7 +55,7 @@ def test_restarted_transfer_counts_no_file_twice(
 def test_complete_file_is_kept_when_the_unit_replaces_and_deletes_it(
     tmp_path: Path,
 ) -> None:
-    unit = TellingUnit(a=b"before" * 20)
+    unit = RecordingsUnit(a=b"before" * 20)
     finish(unit.pull(tmp_path))
     unit.files["boot/a.mcap"] = b"another" * 40
 
@@ -72,7 +72,7 @@ def test_complete_file_is_kept_when_the_unit_replaces_and_deletes_it(
 
 def test_complete_file_is_kept_during_the_transfer_of_its_extension(tmp_path: Path) -> None:
     """The unit may never come back, and whoever pulls may be killed."""
-    unit, before = TellingUnit(a=b"before" * 20), b"before" * 20
+    unit, before = RecordingsUnit(a=b"before" * 20), b"before" * 20
     finish(unit.pull(tmp_path))
     grown = unit.files["boot/a.mcap"] = before + bytes(100_000)
     fetch = unit.pull(tmp_path)
@@ -88,7 +88,7 @@ def test_complete_file_is_kept_during_the_transfer_of_its_extension(tmp_path: Pa
 
 
 def test_damaged_list_of_hashes_does_not_end_the_transfer(tmp_path: Path) -> None:
-    unit = TellingUnit(a=b"all of it")
+    unit = RecordingsUnit(a=b"all of it")
     finish(unit.pull(tmp_path))
     hashes = tmp_path / U / fetching.HASHES
     hashes.write_bytes(b"\xff\xfe" + hashes.read_bytes())
@@ -99,7 +99,7 @@ def test_damaged_list_of_hashes_does_not_end_the_transfer(tmp_path: Path) -> Non
 
 
 def test_replaced_file_is_pulled_in_its_current_version(tmp_path: Path) -> None:
-    unit = TellingUnit(a=b"before" * 20, b=b"before" * 20)
+    unit = RecordingsUnit(a=b"before" * 20, b=b"before" * 20)
     finish(unit.pull(tmp_path))
     unit.files = {"boot/a.mcap": b"shorter", "boot/b.mcap": b"longer" * 99}
     fetch = finish(unit.pull(tmp_path))
@@ -111,7 +111,7 @@ def test_file_deleted_during_a_waiting_transfer_is_reported_as_gone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It asks anew what there is, and is not told of it any more."""
-    unit = TellingUnit(a=b"a" * 500, b=b"b" * 5000, c=b"c" * 500)
+    unit = RecordingsUnit(a=b"a" * 500, b=b"b" * 5000, c=b"c" * 500)
     fetch = unit.pull(tmp_path)
     while not (tmp_path / U / "boot" / "a.mcap").exists():
         fetch.step()
@@ -131,7 +131,7 @@ def test_file_deleted_during_a_waiting_transfer_is_reported_as_gone(
 def test_received_files_of_a_failed_transfer_are_listed_with_their_hashes(
     tmp_path: Path,
 ) -> None:
-    unit = TellingUnit(a=b"half")
+    unit = RecordingsUnit(a=b"half")
     finish(unit.pull(tmp_path))
     whole = unit.files["boot/a.mcap"] = b"half of it"
     unit.files["boot/b.mcap"] = b"another"

@@ -9,7 +9,7 @@ import pytest
 
 from base_station.unit_sync.recordings.transfer import Transfer, TransferRequest, TransferState
 from shared.clock import ManualClock
-from tests.rig.changing_recordings import TellingUnit, pulled
+from tests.rig.changing_recordings import RecordingsUnit, pulled
 from tests.rig.recorded_unit import U, finish
 
 
@@ -18,7 +18,7 @@ def test_time_for_other_units_does_not_reduce_the_piece_size(
     tmp_path: Path, others_s: float, link_s: float, grows: bool
 ) -> None:
     """One that is out of reach may take seconds of every round."""
-    unit, clock = TellingUnit(a=bytes(100_000)), ManualClock()
+    unit, clock = RecordingsUnit(a=bytes(100_000)), ManualClock()
     unit.before = lambda _: clock.advance(link_s)
     fetch = Transfer(unit.ask, tmp_path, TransferRequest(U, 1, 2), clock)
     for _ in range(8):
@@ -31,7 +31,7 @@ def test_time_for_other_units_does_not_reduce_the_piece_size(
 def test_piece_size_follows_a_thinner_link(tmp_path: Path) -> None:
     """Pieces too large for the link are not requested repeatedly."""
     content = random.Random(1).randbytes(300_000)
-    unit, carried_bytes = TellingUnit(a=content), len(content)
+    unit, carried_bytes = RecordingsUnit(a=content), len(content)
 
     def ask(unit_id: str, question: str) -> bytes | None:
         answer = unit.ask(unit_id, question)
@@ -52,7 +52,7 @@ def test_piece_size_follows_a_thinner_link(tmp_path: Path) -> None:
 
 
 def test_unit_with_short_answers_is_asked_with_pauses(tmp_path: Path) -> None:
-    unit = TellingUnit(a=b"all of it")
+    unit = RecordingsUnit(a=b"all of it")
 
     def lie(question: str) -> None:
         unit.files["boot/a.mcap"] = b"all of it" if question.startswith("index") else b"half"
@@ -69,7 +69,7 @@ def test_unit_with_short_answers_is_asked_with_pauses(tmp_path: Path) -> None:
 
 
 def test_failure_of_the_bus_does_not_end_the_transfer(tmp_path: Path) -> None:
-    unit, failures = TellingUnit(a=b"all of it"), [RuntimeError("can't start new thread")]
+    unit, failures = RecordingsUnit(a=b"all of it"), [RuntimeError("can't start new thread")]
 
     def fail_once(_: str) -> None:
         if failures:

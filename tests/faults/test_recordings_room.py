@@ -11,7 +11,7 @@ import pytest
 
 from base_station.unit_sync.recordings import transfer as fetching
 from base_station.unit_sync.recordings.transfer import TransferState
-from tests.rig.changing_recordings import TellingUnit
+from tests.rig.changing_recordings import RecordingsUnit
 from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
@@ -70,7 +70,7 @@ def test_disk_filled_during_the_transfer_is_reported_and_keeps_the_received_part
 def test_recordings_of_other_times_count_as_no_free_space(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    unit = TellingUnit(old=b"old" * 1000)
+    unit = RecordingsUnit(old=b"old" * 1000)
     finish(unit.pull(tmp_path))
     unit.files = {f"boot/{name}.mcap": bytes(400) for name in "ab"}
     unit.pieces.clear()

@@ -22,7 +22,7 @@ from tests.rig.waiting import until
 DAY_S = 86_400.0
 
 
-class Ground:
+class ClockScene:
     """A station, a unit that somebody wears in an open incident, and a console."""
 
     def __init__(self, folder: Path, closing: ExitStack) -> None:
@@ -68,13 +68,13 @@ class Ground:
 
 
 @pytest.fixture
-def ground(tmp_path: Path) -> Iterator[Ground]:
+def ground(tmp_path: Path) -> Iterator[ClockScene]:
     with ExitStack() as closing:
-        yield Ground(tmp_path, closing)
+        yield ClockScene(tmp_path, closing)
 
 
 def test_clock_set_during_an_incident_raises_no_link_alarm_and_ends_no_login(
-    ground: Ground,
+    ground: ClockScene,
 ) -> None:
     ground.dress()
     until(lambda: ground.problem_stated("plain TCP"), "the unit is heard")

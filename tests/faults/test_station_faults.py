@@ -132,7 +132,7 @@ def test_erasure_waits_for_the_checkpoint_in_progress(
         assert forgotten.result(PATIENCE_S).refused is None
 
 
-class Nowhere:
+class DiscardingLog:
     """A ``Log`` that keeps nothing."""
 
     problem = little_room = ""
@@ -146,7 +146,7 @@ class Nowhere:
         return True
 
 
-class Idle:
+class IdleFeed:
     """A ``Feed`` that brings nothing; waiting takes no time."""
 
     follows = False
@@ -172,8 +172,8 @@ def test_failing_snapshot_is_retried_without_load_and_logged_once(
 ) -> None:
     """It is tried again at every turn, for days perhaps."""
     clock = ManualClock()
-    feed = Idle(clock, 300)
-    ports = ports_of(feed, Nowhere(), Screen(), tmp_path, clock)
+    feed = IdleFeed(clock, 300)
+    ports = ports_of(feed, DiscardingLog(), Screen(), tmp_path, clock)
     drive = StationEngine(make_pipeline(), ports)
 
     def fail(*_: object) -> None:

@@ -20,7 +20,7 @@ SAFE_AFTER_NS = 3 * NS_PER_S  # flushed every half second, and a machine under t
 KEY = TEMPERATURE.key("anna")
 
 
-class Speaker:
+class FastUnit:
     """A unit that speaks a hundred times a second until told to stop."""
 
     def __init__(self, port: int, boot_id: int) -> None:
@@ -68,7 +68,7 @@ def test_written_and_acknowledged_messages_survive_a_kill(tmp_path: Path) -> Non
                 browser.call("POST", "/units", json={"unit_id": "anna"})
                 for incident in known:
                     browser.close_incident(incident)
-                speaker = Speaker(port, boot_id)
+                speaker = FastUnit(port, boot_id)
                 time.sleep(4.0 + chance.random())
                 opened = browser.call("POST", "/incidents", json={"name": f"fire {boot_id}"})
                 promised.append(opened["incident_id"])

@@ -38,7 +38,7 @@ class Logged(NamedTuple):
         return self.message.header.boot_id, self.message.header.seq
 
 
-class Ground:
+class UnitClockScene:
     """A station that is killed and started again, and a unit whose clock can be set."""
 
     def __init__(self, folder: Path, closing: ExitStack) -> None:
@@ -90,13 +90,13 @@ class Ground:
 
 
 @pytest.fixture
-def ground(tmp_path: Path) -> Iterator[Ground]:
+def ground(tmp_path: Path) -> Iterator[UnitClockScene]:
     with ExitStack() as closing:
-        yield Ground(tmp_path, closing)
+        yield UnitClockScene(tmp_path, closing)
 
 
 def test_clock_set_by_a_day_keeps_order_and_times_with_and_without_a_station(
-    ground: Ground,
+    ground: UnitClockScene,
 ) -> None:
     until(ground.is_received, "the unit is heard", COMPILING_S)
     for ahead_s in (DAY_S, -DAY_S):

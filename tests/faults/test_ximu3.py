@@ -22,7 +22,7 @@ from tests.rig.waiting import until
 from tests.rig.ximu3_device import STEP_US, PtyDevice, TcpDevice, at_rest, text_message
 
 
-class Hasty:
+class FastClock:
     """A clock that goes twenty times as fast, so that nobody waits for a silence."""
 
     def monotonic_ns(self) -> int:
@@ -36,7 +36,7 @@ class Listener:
     """A source that is read by a thread, as the agent does it."""
 
     def __init__(self, text: str, hasty: bool = False) -> None:
-        self.source = Ximu3Source(text, Hasty() if hasty else None)
+        self.source = Ximu3Source(text, FastClock() if hasty else None)
         self.batches: list[SensorBatch] = []
         self._faults: list[str] = []
         self._thread = Thread(target=self._run, daemon=True)

@@ -12,23 +12,23 @@ import pytest_asyncio
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.store import Store
 from shared.clock import ManualClock
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 from tests.rig.erasure_folders import split_log
-from tests.rig.erasure_scenario import Story
+from tests.rig.erasure_scenario import ErasureScenario
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 from tests.rig.station_command import Command, Unit
 from tests.rig.station_process import free_port
 from tests.rig.table_side import TableSide
 
 
 @pytest.fixture
-def station(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
+def station(tmp_path: Path, clock: ManualClock) -> Iterator[InProcessStation]:
+    station = InProcessStation(tmp_path, clock)
     yield station
     station.close()
 
 
 @pytest_asyncio.fixture
-async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+async def browser(station: InProcessStation) -> AsyncIterator[httpx.AsyncClient]:
     """Logged in as the commander with a cookie."""
     async with station.client() as client:
         client.headers["origin"] = ORIGIN
@@ -86,6 +86,6 @@ def unit(port: int) -> Iterator[Unit]:
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A station's folder with people in it, and a log of several segments."""
-    folder = Story(tmp_path_factory.mktemp("told") / "station").folder
+    folder = ErasureScenario(tmp_path_factory.mktemp("told") / "station").folder
     split_log(DataFolder(folder).log, 4)
     return folder

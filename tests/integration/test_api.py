@@ -18,18 +18,18 @@ from shared.clock import NS_PER_MS, ManualClock
 from shared.envelope import Stamper
 from shared.messages import EventKind, Position, Temperature, UnitEvent
 from shared.messages.station import ReportProblem
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 from tests.rig.incident_closing import despite
 
 
 @pytest_asyncio.fixture
-async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+async def commander(station: InProcessStation) -> AsyncIterator[httpx.AsyncClient]:
     async with station.client(Role.COMMANDER) as client:
         yield client
 
 
 @pytest_asyncio.fixture
-async def administrator(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+async def administrator(station: InProcessStation) -> AsyncIterator[httpx.AsyncClient]:
     async with station.client(Role.ADMINISTRATOR) as client:
         yield client
 
@@ -115,7 +115,7 @@ async def test_an_incident_is_opened_once_and_closed(
 
 
 async def test_an_alarm_is_acknowledged_and_resolved(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     make_position: Callable[..., Position],
@@ -145,7 +145,7 @@ async def acknowledge(commander: httpx.AsyncClient, alarm_id: str, seen_ms: int)
 
 @pytest.mark.parametrize("what", ["acknowledge", "resolve"])
 async def test_action_on_an_alarm_raised_again_since_is_refused(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, what: str
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock, what: str
 ) -> None:
     await commander.post("/units", json={"unit_id": "FF-01"})
     stamper = Stamper("FF-01", 1, clock)
@@ -168,7 +168,7 @@ async def test_action_on_an_alarm_raised_again_since_is_refused(
 
 
 async def test_alarm_action_without_its_raising_is_refused(
-    station: DeskStation, commander: httpx.AsyncClient
+    station: InProcessStation, commander: httpx.AsyncClient
 ) -> None:
     station.drive.submit("station", ReportProblem("log", "It fails"))
     station.projection.flush()
@@ -180,7 +180,7 @@ async def test_alarm_action_without_its_raising_is_refused(
 
 
 async def test_alarms_of_an_incident_show_when_they_were_raised_again(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     """Worse, or again after somebody had acknowledged it; not where it eased, nor afterwards."""
     await commander.post("/units", json={"unit_id": "FF-01"})
@@ -229,7 +229,7 @@ async def test_alarms_of_an_incident_show_when_they_were_raised_again(
 
 @pytest.mark.parametrize("part", ["log", "apart engine-2", "flood FF-01@tracker"])
 async def test_alarm_of_any_failed_part_of_the_station_can_be_resolved(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, part: str
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock, part: str
 ) -> None:
     station.drive.submit("station", ReportProblem(part, "It fails"))
     station.projection.flush()
@@ -244,7 +244,7 @@ async def test_alarm_of_any_failed_part_of_the_station_can_be_resolved(
 
 
 async def _walk(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     make_position: Callable[..., Position],
@@ -271,7 +271,7 @@ async def close_over_all(commander: httpx.AsyncClient, incident: str) -> None:
 
 
 async def test_tracks_can_be_thinned(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     make_position: Callable[..., Position],
@@ -286,7 +286,7 @@ async def test_tracks_can_be_thinned(
 
 
 async def test_exports_contain_the_track_or_report_what_is_missing(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     make_position: Callable[..., Position],
@@ -307,7 +307,7 @@ async def test_exports_contain_the_track_or_report_what_is_missing(
 
 
 async def test_gpx_follows_its_schema(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     make_position: Callable[..., Position],
@@ -372,7 +372,7 @@ async def test_actions_are_in_the_audit(
 
 
 async def test_users_are_managed_by_administrators(
-    station: DeskStation, administrator: httpx.AsyncClient
+    station: InProcessStation, administrator: httpx.AsyncClient
 ) -> None:
     new = {"username": "mia", "password": PASSWORD, "role": "viewer"}
     assert (await administrator.post("/users", json=new)).status_code == 204

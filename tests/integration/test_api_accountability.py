@@ -11,10 +11,10 @@ from base_station.accounts.principals import Role
 from base_station.config import AccountabilityConfig
 from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Heartbeat, Tick
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 
-def pass_time(station: DeskStation, clock: ManualClock, time_s: float) -> None:
+def pass_time(station: InProcessStation, clock: ManualClock, time_s: float) -> None:
     clock.advance(time_s)
     station.drive.receive(Tick(Header(STATION_ID, 1, 1, 0), clock.utc_ns()))
 
@@ -34,7 +34,7 @@ async def states(client: AsyncClient) -> dict[str, str]:
 
 
 async def test_accountability_goes_from_green_to_overdue_and_confirmed(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         incident_id = await open_incident(commander)
@@ -64,7 +64,7 @@ async def test_accountability_goes_from_green_to_overdue_and_confirmed(
 
 
 async def test_assignment_of_a_unit_confirms_no_member(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await open_incident(commander)
@@ -82,7 +82,7 @@ async def test_assignment_of_a_unit_confirms_no_member(
         }  # fmt: skip
 
 
-async def test_a_check_in_is_undone_by_its_id(station: DeskStation) -> None:
+async def test_a_check_in_is_undone_by_its_id(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await open_incident(commander)
         everyone = {"target": {"everyone": True}}
@@ -108,7 +108,7 @@ async def test_a_check_in_is_undone_by_its_id(station: DeskStation) -> None:
     assert [entry["action"] for entry in entries].count("UndoConfirmation") == 3
 
 
-async def test_an_answer_by_radio_to_a_par_request_is_undone(station: DeskStation) -> None:
+async def test_an_answer_by_radio_to_a_par_request_is_undone(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await open_incident(commander)
         request = {"kind": "par_request", "target": {"everyone": True}}
@@ -127,7 +127,7 @@ async def test_an_answer_by_radio_to_a_par_request_is_undone(station: DeskStatio
         assert none.status_code == 404
 
 
-async def test_incident_starts_with_the_times_of_the_station(station: DeskStation) -> None:
+async def test_incident_starts_with_the_times_of_the_station(station: InProcessStation) -> None:
     usual = {"par_interval_s": 900.0, "work_limit_s": 1500.0}
     station.app.state.services = dataclasses.replace(
         station.services, accountability=AccountabilityConfig(**usual)
@@ -152,13 +152,13 @@ async def test_incident_starts_with_the_times_of_the_station(station: DeskStatio
     ],
 )
 async def test_check_in_by_a_viewer_is_refused(
-    station: DeskStation, method: str, path: str, body: dict[str, object]
+    station: InProcessStation, method: str, path: str, body: dict[str, object]
 ) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.request(method, path, json=body)).status_code == 403
 
 
-async def test_a_check_in_is_in_the_audit(station: DeskStation) -> None:
+async def test_a_check_in_is_in_the_audit(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await open_incident(commander)
         await commander.post("/check-ins", json={"target": {"everyone": True}})

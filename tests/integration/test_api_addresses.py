@@ -10,7 +10,7 @@ from fastapi.routing import APIRoute
 
 from base_station.accounts.principals import Role
 from base_station.api.routes import ROUTERS
-from tests.rig.desk_station import ORIGIN, DeskStation
+from tests.rig.in_process_station import ORIGIN, InProcessStation
 
 GUESSED = "nmae"  # a parameter of no route
 INCIDENT = "/incidents/x"
@@ -33,7 +33,7 @@ async def refusal(client: httpx.AsyncClient, method: str, path: str) -> str:
 
 
 async def test_every_route_refuses_a_parameter_that_it_does_not_take(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     tried = 0
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -58,14 +58,14 @@ async def test_every_route_refuses_a_parameter_that_it_does_not_take(
     ],
 )
 async def test_refusal_suggests_the_probable_parameter(
-    station: DeskStation, path: str, reported: str
+    station: InProcessStation, path: str, reported: str
 ) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await refusal(viewer, "GET", path)).startswith(reported)
 
 
 async def test_an_upload_with_a_wrong_parameter_is_refused_and_not_stored(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         person_id = (await commander.post("/people", json={"name": "Ada"})).json()["person_id"]
@@ -77,7 +77,7 @@ async def test_an_upload_with_a_wrong_parameter_is_refused_and_not_stored(
         assert (await commander.get(path)).status_code == 404
 
 
-async def test_head_is_answered_wherever_get_is(station: DeskStation) -> None:
+async def test_head_is_answered_wherever_get_is(station: InProcessStation) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         assert (await client.post("/people", json={"name": "Ada"})).status_code == 201
         paths = [path for method, path in addresses() if method == "GET"]
@@ -93,7 +93,7 @@ async def test_head_is_answered_wherever_get_is(station: DeskStation) -> None:
 
 
 async def test_refused_method_gets_the_allowed_ones(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     """All of the address, though each method is a route of its own."""
     known: dict[str, set[str]] = {}

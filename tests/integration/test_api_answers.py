@@ -21,7 +21,7 @@ from base_station.storage.projection import Projection
 from shared.clock import ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from shared.messages.station import ReportProblem
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.waiting import PATIENCE_S
 
 EVERYONE = {"target": {"everyone": True}}
@@ -32,7 +32,7 @@ MANY_READERS = 60  # the routes share 40 threads
 class Scene(NamedTuple):
     """Ada wears FF-01 in an open incident, and has pressed the button."""
 
-    station: DeskStation
+    station: InProcessStation
     commander: httpx.AsyncClient
     incident_id: str
     mayday_id: str
@@ -40,7 +40,7 @@ class Scene(NamedTuple):
 
 
 @pytest_asyncio.fixture
-async def scene(station: DeskStation, clock: ManualClock) -> AsyncIterator[Scene]:
+async def scene(station: InProcessStation, clock: ManualClock) -> AsyncIterator[Scene]:
     async with station.client(Role.ADMINISTRATOR) as commander:
         person = (await commander.post("/people", json={"name": "Ada", "crew": "A"})).json()
         await commander.post("/units", json={"unit_id": "FF-01"})
@@ -66,7 +66,7 @@ def slow_database(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @contextmanager
-def database_hangs(station: DeskStation) -> Iterator[None]:
+def database_hangs(station: InProcessStation) -> Iterator[None]:
     """A transaction takes for ever; who reads is answered as before."""
     with station.store.write():
         yield

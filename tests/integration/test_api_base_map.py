@@ -10,7 +10,7 @@ from PIL import Image
 from base_station.accounts.principals import Role
 from base_station.site.base_map import corners_of
 from shared.errors import ConfigError
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 # A degree of latitude is 111 km: 200 by 100 pixels of a metre, north up.
 WORLD = (1.6e-5, 0.0, 0.0, -9e-6, 4.0, 52.0)
@@ -30,7 +30,7 @@ def address(world: tuple[float, ...] = WORLD, crs: str = "EPSG:4326") -> str:
 PNG = {"Content-Type": "image/png"}
 
 
-async def test_map_is_set_read_and_removed(station: DeskStation) -> None:
+async def test_map_is_set_read_and_removed(station: InProcessStation) -> None:
     async with station.client(Role.ADMINISTRATOR) as admin:
         assert (await admin.get("/site/base-map")).json() is None
         answer = await admin.put(address(), content=picture(), headers=PNG)
@@ -51,7 +51,7 @@ async def test_map_is_set_read_and_removed(station: DeskStation) -> None:
         assert gone.status_code == 404
 
 
-async def test_large_map_is_scaled_down_with_unchanged_corners(station: DeskStation) -> None:
+async def test_large_map_is_scaled_down_with_unchanged_corners(station: InProcessStation) -> None:
     world = (8e-6, 0.0, 0.0, -4.5e-6, 4.0, 52.0)
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world), content=picture("JPEG", (8192, 4096)), headers=PNG)
@@ -75,7 +75,7 @@ async def test_large_map_is_scaled_down_with_unchanged_corners(station: DeskStat
     ],
 )
 async def test_invalid_map_is_refused_with_a_reason(
-    station: DeskStation, content: bytes, world: tuple[float, ...], why: str
+    station: InProcessStation, content: bytes, world: tuple[float, ...], why: str
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world), content=content, headers=PNG)
@@ -85,13 +85,15 @@ async def test_invalid_map_is_refused_with_a_reason(
 
 
 @pytest.mark.parametrize("world", [WORLD[:5], (*WORLD, 1.0)])
-async def test_a_world_file_has_six_numbers(station: DeskStation, world: tuple[float, ...]) -> None:
+async def test_a_world_file_has_six_numbers(
+    station: InProcessStation, world: tuple[float, ...]
+) -> None:
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world), content=picture(), headers=PNG)
         assert answer.status_code == 422
 
 
-async def test_map_is_set_by_administrators_only(station: DeskStation) -> None:
+async def test_map_is_set_by_administrators_only(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         answer = await commander.put(address(), content=picture(), headers=PNG)
         assert answer.status_code == 403
@@ -99,7 +101,7 @@ async def test_map_is_set_by_administrators_only(station: DeskStation) -> None:
         assert (await commander.get("/site/base-map")).status_code == 200
 
 
-async def test_map_of_a_survey_is_placed_in_its_utm_zone(station: DeskStation) -> None:
+async def test_map_of_a_survey_is_placed_in_its_utm_zone(station: InProcessStation) -> None:
     world = (0.2, 0.0, 0.0, -0.2, 500_000.1, 5_761_038.1)  # on the meridian, 9 degrees east
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world, "EPSG:25832"), content=picture(), headers=PNG)

@@ -12,12 +12,12 @@ import pytest_asyncio
 from base_station.accounts.principals import Role
 from base_station.api.forms import MAX_BYTES, MAX_UPLOAD_BYTES
 from base_station.api.uploads import UploadTurns
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.waiting import PATIENCE_S
 
 
 @pytest_asyncio.fixture
-async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+async def commander(station: InProcessStation) -> AsyncIterator[httpx.AsyncClient]:
     async with station.client(Role.COMMANDER) as client:
         yield client
 
@@ -51,7 +51,9 @@ async def test_endless_body_is_refused(
 
 
 @pytest.mark.parametrize("path", ["/site/plan", "/people/x/photo", "/site/base-map?world=1"])
-async def test_body_of_a_request_without_login_is_not_read(station: DeskStation, path: str) -> None:
+async def test_body_of_a_request_without_login_is_not_read(
+    station: InProcessStation, path: str
+) -> None:
     read = 0
 
     async def body() -> AsyncIterator[bytes]:
@@ -73,7 +75,7 @@ async def test_deeply_nested_json_is_refused(commander: httpx.AsyncClient, bomb:
 
 
 async def test_slow_uploads_delay_no_picture_and_no_plan_of_others(
-    station: DeskStation, commander: httpx.AsyncClient
+    station: InProcessStation, commander: httpx.AsyncClient
 ) -> None:
     station.app.state.upload_turns = UploadTurns(turn_s=0.1)
     read, may_end = 0, asyncio.Event()

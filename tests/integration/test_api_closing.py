@@ -15,7 +15,7 @@ from shared.clock import ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from shared.messages.station import ReportProblem
 from tests.rig import message_factory
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 
 async def open_incident(commander: AsyncClient, name: str = "Ana") -> str:
@@ -28,27 +28,27 @@ async def open_incident(commander: AsyncClient, name: str = "Ana") -> str:
     return f"/incidents/{opened.json()['incident_id']}"
 
 
-def walk_in(station: DeskStation) -> None:
+def walk_in(station: InProcessStation) -> None:
     header = Header("FF-01", 7, 1, 5)
     station.drive.receive(message_factory.position(header, north_m=9.0, distance_m=9.0))
 
 
-def mayday(station: DeskStation, seq: int = 2) -> None:
+def mayday(station: InProcessStation, seq: int = 2) -> None:
     station.drive.receive(UnitEvent(Header("FF-01", 7, seq, 5 + seq), EventKind.MAYDAY))
 
 
-def open_alarms(station: DeskStation) -> list[AlarmView]:
+def open_alarms(station: InProcessStation) -> list[AlarmView]:
     return [one for one in station.drive.picture().alarms if one.state != "resolved"]
 
 
-async def audited(station: DeskStation, action: str) -> list[dict[str, Any]]:
+async def audited(station: InProcessStation, action: str) -> list[dict[str, Any]]:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         entries = (await administrator.get("/audit")).json()
     return [entry for entry in entries if entry["action"] == action]
 
 
 async def test_closing_names_open_alarms_and_members_inside(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         path = await open_incident(commander)
@@ -76,7 +76,7 @@ async def test_closing_names_open_alarms_and_members_inside(
 
 
 async def test_closing_names_alarms_that_are_new_since(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         path = await open_incident(commander)
@@ -89,7 +89,7 @@ async def test_closing_names_alarms_that_are_new_since(
     assert "Mayday from Ana" in refused.json()["detail"]
 
 
-async def test_alarms_of_the_station_do_not_prevent_closing(station: DeskStation) -> None:
+async def test_alarms_of_the_station_do_not_prevent_closing(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         path = await open_incident(commander)
         station.drive.submit("station", ReportProblem("log", "It fails"))
@@ -101,7 +101,7 @@ async def test_alarms_of_the_station_do_not_prevent_closing(station: DeskStation
     "body", [{"despite_alarm_ids": "all"}, {"despite_unit_ids": ["a b"]}, {"force": True}]
 )
 async def test_invalid_request_closes_nothing(
-    station: DeskStation, body: dict[str, object]
+    station: InProcessStation, body: dict[str, object]
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         path = await open_incident(commander)

@@ -10,13 +10,13 @@ from edge.simulation.building import plan_path
 from shared.clock import ManualClock
 from shared.messages import CommandReply, CommandState, Header
 from tests.rig import message_factory
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 
 
 async def test_command_to_a_crew_is_sent_and_its_answers_are_shown(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         for unit_id, crew in (("FF-01", "A"), ("FF-02", "A"), ("FF-03", "B")):
@@ -54,7 +54,7 @@ async def test_command_to_a_crew_is_sent_and_its_answers_are_shown(
 
 
 async def test_command_to_a_floor_includes_units_with_unknown_floor(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     """A plan of two floors; FF-01 is on the upper one, of FF-03 no position has come."""
     async with station.client(Role.COMMANDER) as commander:
@@ -85,7 +85,7 @@ async def test_command_to_a_floor_includes_units_with_unknown_floor(
 
 
 async def test_command_shows_whether_units_can_notify_and_have_notified(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         for unit_id, outputs in (("FF-01", ("led",)), ("FF-02", ())):
@@ -106,7 +106,7 @@ async def test_command_shows_whether_units_can_notify_and_have_notified(
     assert (second["state"], second["notified_ms"]) == ("queued", None)
 
 
-async def test_viewer_reads_commands_and_sends_none(station: DeskStation) -> None:
+async def test_viewer_reads_commands_and_sends_none(station: InProcessStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.post("/commands", json=EVACUATE)).status_code == 403
         refused = await viewer.post("/commands/c1/confirm", json={"unit_id": "FF-01"})
@@ -132,7 +132,7 @@ async def test_viewer_reads_commands_and_sends_none(station: DeskStation) -> Non
     ],
 )
 async def test_invalid_command_is_refused(
-    station: DeskStation, change: dict[str, object], status: int, word: str
+    station: InProcessStation, change: dict[str, object], status: int, word: str
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         answer = await commander.post("/commands", json=EVACUATE | change)

@@ -13,7 +13,7 @@ from base_station.api.forms import MAX_DISPATCH_BYTES
 from base_station.dispatch.config import DispatchConfig, Opening
 from base_station.storage.db.window import EVER
 from shared.clock import ManualClock
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 FIRE: dict[str, Any] = {
     "number": "2026/1234",
@@ -26,7 +26,7 @@ CAP = {"content-type": "application/cap+xml"}
 
 
 @pytest.fixture
-def automatic(station: DeskStation) -> DeskStation:
+def automatic(station: InProcessStation) -> InProcessStation:
     config = DispatchConfig(open=Opening.AUTOMATICALLY)
     services = dataclasses.replace(station.services, dispatch=config)
     station.services = station.app.state.services = services
@@ -41,7 +41,7 @@ async def post(client: AsyncClient, **change: Any) -> dict[str, Any]:
 
 
 async def test_dispatch_is_offered_updated_and_opened_by_a_user(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
         await client.post("/people", json={"name": "Ada", "crew": "Engine 12"})
@@ -76,7 +76,7 @@ async def test_dispatch_is_offered_updated_and_opened_by_a_user(
         assert actions.count("NoteDispatch") == 3  # not of what was known before
 
 
-async def test_dismissed_dispatch_stays_dismissed(station: DeskStation) -> None:
+async def test_dismissed_dispatch_stays_dismissed(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         number = {"number": FIRE["number"]}
         assert (await client.post("/dispatch/dismissals", json=number)).status_code == 404
@@ -88,7 +88,7 @@ async def test_dismissed_dispatch_stays_dismissed(station: DeskStation) -> None:
 
 
 async def test_dispatch_opens_automatically_unless_an_incident_is_open(
-    automatic: DeskStation,
+    automatic: InProcessStation,
 ) -> None:
     async with automatic.client(Role.COMMANDER) as client:
         first = await post(client)
@@ -107,7 +107,7 @@ async def test_dispatch_opens_automatically_unless_an_incident_is_open(
         assert over["outcome"] == "offered"
 
 
-async def test_token_for_dispatch_is_limited_to_dispatch(station: DeskStation) -> None:
+async def test_token_for_dispatch_is_limited_to_dispatch(station: InProcessStation) -> None:
     accounts = station.services.accounts
     _, secret = accounts.add_token("commander", "cad", Role.COMMANDER, None, ["dispatch"])
     async with station.client() as client:
@@ -117,7 +117,7 @@ async def test_token_for_dispatch_is_limited_to_dispatch(station: DeskStation) -
         assert (await client.get("/people")).status_code == 403
 
 
-async def test_invalid_bodies_are_refused_with_a_reason(station: DeskStation) -> None:
+async def test_invalid_bodies_are_refused_with_a_reason(station: InProcessStation) -> None:
     json_type = {"content-type": "application/json"}
     async with station.client(Role.COMMANDER) as client:
         for path, content, headers, status in (
@@ -136,7 +136,7 @@ async def test_invalid_bodies_are_refused_with_a_reason(station: DeskStation) ->
         assert (await client.get("/dispatch")).json() == []
 
 
-async def test_an_alert_is_a_marker_until_it_is_cancelled(station: DeskStation) -> None:
+async def test_an_alert_is_a_marker_until_it_is_cancelled(station: InProcessStation) -> None:
     def alert(identifier: str, kind: str, references: str = "") -> str:
         return f"""<alert xmlns="urn:oasis:names:tc:emergency:cap:1.2">
             <identifier>{identifier}</identifier><sender>s</sender>

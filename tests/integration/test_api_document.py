@@ -11,14 +11,14 @@ import pytest
 from base_station.api.field_descriptions import FIELDS, SUBJECTS
 from base_station.api.field_descriptions.parameters import PARAMETERS
 from shared.clock import ManualClock
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 Document = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
 def document(tmp_path_factory: pytest.TempPathFactory) -> Document:
-    station = DeskStation(tmp_path_factory.mktemp("station"), ManualClock())
+    station = InProcessStation(tmp_path_factory.mktemp("station"), ManualClock())
     try:
         return station.app.openapi()
     finally:

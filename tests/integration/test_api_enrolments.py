@@ -15,31 +15,31 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.storage.db.window import EVER
 from shared.enrolment import Holder, parse_enrolment
 from shared.errors import StoreError
-from tests.rig.desk_station import ORIGIN, DeskStation
+from tests.rig.in_process_station import ORIGIN, InProcessStation
 
 UNIT = {"unit_id": "FF-01"}
 DAY_MS = 86_400_000
 
 
 @pytest.fixture
-def pki(station: DeskStation, tmp_path: Path) -> PkiFolder:
+def pki(station: InProcessStation, tmp_path: Path) -> PkiFolder:
     folder = PkiFolder(tmp_path)
     folder.create("Test", ["192.0.2.7"], ["tls/192.0.2.7:7447"])
     set_services(station, pki=folder)
     return folder
 
 
-def set_services(station: DeskStation, **what: object) -> None:
+def set_services(station: InProcessStation, **what: object) -> None:
     services = dataclasses.replace(station.services, **what)  # type: ignore[arg-type]
     station.services = station.app.state.services = services
 
 
-def audited(station: DeskStation) -> list[tuple[str, str, str]]:
+def audited(station: InProcessStation) -> list[tuple[str, str, str]]:
     entries = station.services.records.audit_entries(EVER)
     return [(entry.by, entry.action, entry.detail) for entry in entries]
 
 
-def client_at(station: DeskStation, address: str) -> httpx.AsyncClient:
+def client_at(station: InProcessStation, address: str) -> httpx.AsyncClient:
     """An administrator's program at this address."""
     administrator = station.client(Role.ADMINISTRATOR)
     transport = httpx.ASGITransport(station.app, client=(address, 40_000))
@@ -60,7 +60,7 @@ def scanned(rows: list[str]) -> str:
     return str(code.text)
 
 
-async def test_an_administrator_enrols_a_unit(station: DeskStation, pki: PkiFolder) -> None:
+async def test_an_administrator_enrols_a_unit(station: InProcessStation, pki: PkiFolder) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         answer = await client.post("/enrolments", json=UNIT)
         assert answer.status_code == 201
@@ -79,7 +79,7 @@ async def test_an_administrator_enrols_a_unit(station: DeskStation, pki: PkiFold
 
 
 async def test_second_enrolment_is_refused_and_renewal_is_allowed(
-    station: DeskStation, pki: PkiFolder
+    station: InProcessStation, pki: PkiFolder
 ) -> None:
     """The key is nowhere: whose answer was lost sends another request, and no key repeats one."""
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -95,7 +95,9 @@ async def test_second_enrolment_is_refused_and_renewal_is_allowed(
     assert [action for _, action, _ in audited(station)] == ["RenewedEnrolment", "MadeEnrolment"]
 
 
-async def test_renewal_of_an_unknown_unit_is_refused(station: DeskStation, pki: PkiFolder) -> None:
+async def test_renewal_of_an_unknown_unit_is_refused(
+    station: InProcessStation, pki: PkiFolder
+) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         answer = await client.post("/enrolments", json=UNIT | {"renew": True})
         assert answer.status_code == 409
@@ -106,7 +108,7 @@ async def test_renewal_of_an_unknown_unit_is_refused(station: DeskStation, pki: 
 
 
 async def test_a_revoked_unit_is_not_listed_and_is_enrolled_anew(
-    station: DeskStation, pki: PkiFolder
+    station: InProcessStation, pki: PkiFolder
 ) -> None:
     pki.enroll("FF-01")
     pki.enroll("chief", Holder.OPERATOR)
@@ -118,7 +120,7 @@ async def test_a_revoked_unit_is_not_listed_and_is_enrolled_anew(
 
 @pytest.mark.parametrize("address", ["192.0.2.20", "2001:db8::7", "", "::ffff:192.0.2.20"])
 async def test_private_key_is_not_sent_over_a_plain_network(
-    station: DeskStation, pki: PkiFolder, address: str
+    station: InProcessStation, pki: PkiFolder, address: str
 ) -> None:
     async with client_at(station, address) as client:
         answer = await client.post("/enrolments", json=UNIT)
@@ -131,14 +133,14 @@ async def test_private_key_is_not_sent_over_a_plain_network(
 
 @pytest.mark.parametrize("address", ["127.0.0.1", "::1", "::ffff:127.0.0.1"])
 async def test_enrolment_on_the_stations_machine_needs_no_tls(
-    station: DeskStation, pki: PkiFolder, address: str
+    station: InProcessStation, pki: PkiFolder, address: str
 ) -> None:
     async with client_at(station, address) as client:
         assert (await client.post("/enrolments", json=UNIT)).status_code == 201
 
 
 async def test_enrolment_without_an_authority_names_the_remedy(
-    station: DeskStation, tmp_path: Path
+    station: InProcessStation, tmp_path: Path
 ) -> None:
     set_services(station, pki=PkiFolder(tmp_path))
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -155,7 +157,7 @@ async def test_enrolment_without_an_authority_names_the_remedy(
 
 
 async def test_further_station_refers_to_the_first_for_enrolments(
-    station: DeskStation, pki: PkiFolder, tmp_path: Path
+    station: InProcessStation, pki: PkiFolder, tmp_path: Path
 ) -> None:
     other = PkiFolder(tmp_path / "other")
     other.join(pki.enroll_station("b", ["192.0.2.8"], "tls/192.0.2.8:7447"))
@@ -167,7 +169,7 @@ async def test_further_station_refers_to_the_first_for_enrolments(
 
 
 async def test_enrolment_that_cannot_be_audited_is_refused(
-    station: DeskStation, pki: PkiFolder, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, pki: PkiFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def hangs(*_: object) -> None:
         raise StoreError("the disk hangs")
@@ -180,7 +182,7 @@ async def test_enrolment_that_cannot_be_audited_is_refused(
 
 
 async def test_the_private_key_is_in_no_file_of_the_station(
-    station: DeskStation, pki: PkiFolder, tmp_path: Path
+    station: InProcessStation, pki: PkiFolder, tmp_path: Path
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         text = (await client.post("/enrolments", json=UNIT)).json()["text"]

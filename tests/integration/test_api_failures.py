@@ -15,12 +15,12 @@ from base_station.exporters import EXPORTERS
 from base_station.exporters.interface import Exporter
 from base_station.storage.db.records import Records
 from shared.errors import LogError, MusterError, StoreError
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 
 @pytest.mark.parametrize("error", [StoreError("the disk is full"), LogError("a segment is torn")])
 async def test_a_failure_of_the_station_is_503_and_logged(
-    station: DeskStation,
+    station: InProcessStation,
     error: MusterError,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
@@ -37,7 +37,7 @@ async def test_a_failure_of_the_station_is_503_and_logged(
 
 
 async def test_unhandled_error_is_answered_as_a_problem(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: object) -> None:
         raise ValueError("of the program")
@@ -55,7 +55,7 @@ async def test_unhandled_error_is_answered_as_a_problem(
 
 
 async def test_timeout_states_that_the_action_may_still_be_done(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A user who simply repeats the request could open two incidents."""
     waiting: Future[ActionResult] = Future()
@@ -68,7 +68,7 @@ async def test_timeout_states_that_the_action_may_still_be_done(
     assert not waiting.cancelled()
 
 
-async def test_missing_table_is_a_failure_of_the_station(station: DeskStation) -> None:
+async def test_missing_table_is_a_failure_of_the_station(station: InProcessStation) -> None:
     with station.store.write() as session:
         session.connection().exec_driver_sql("DROP TABLE incidents")
     async with station.client(Role.VIEWER) as viewer:
@@ -79,7 +79,7 @@ async def test_missing_table_is_a_failure_of_the_station(station: DeskStation) -
 
 @pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda one: one.name)
 async def test_export_that_cannot_be_audited_is_refused(
-    station: DeskStation, exporter: Exporter, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, exporter: Exporter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await commander.put("/site/anchor", json={"lat_deg": 50.0, "lon_deg": 8.0})
@@ -94,7 +94,7 @@ async def test_export_that_cannot_be_audited_is_refused(
 
 
 async def test_complete_incidents_are_exported_one_at_a_time(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     inside: list[int] = []
     most = 0

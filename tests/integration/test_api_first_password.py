@@ -9,7 +9,7 @@ import pytest
 
 from base_station.accounts.principals import Role
 from tests.integration.test_api_addresses import addresses
-from tests.rig.desk_station import ORIGIN, DeskStation
+from tests.rig.in_process_station import ORIGIN, InProcessStation
 
 GENERATED, OWN = "1a2b-3c4d-5e6f", "correct horse battery"
 LOGIN = {"username": "first", "password": GENERATED}
@@ -18,7 +18,7 @@ STILL = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /hand-ove
 
 
 @pytest.fixture
-def first(station: DeskStation) -> DeskStation:
+def first(station: InProcessStation) -> InProcessStation:
     accounts = station.services.accounts
     accounts.add_user("first", GENERATED, Role.ADMINISTRATOR, generated=True)
     return station
@@ -32,7 +32,7 @@ async def log_in(client: httpx.AsyncClient, password: str = GENERATED) -> bool:
     return bool(answer.json()["must_change_password"])
 
 
-async def test_requests_before_the_password_change_are_refused(first: DeskStation) -> None:
+async def test_requests_before_the_password_change_are_refused(first: InProcessStation) -> None:
     async with first.client() as client:
         assert await log_in(client)
         for method, path in addresses():
@@ -44,7 +44,7 @@ async def test_requests_before_the_password_change_are_refused(first: DeskStatio
         assert (await client.get("/me")).json()["must_change_password"] is True
 
 
-async def test_session_continues_after_the_password_change(first: DeskStation) -> None:
+async def test_session_continues_after_the_password_change(first: InProcessStation) -> None:
     async with first.client() as client:
         assert await log_in(client)
         same = {"old_password": GENERATED, "new_password": GENERATED}
@@ -58,7 +58,7 @@ async def test_session_continues_after_the_password_change(first: DeskStation) -
         assert not await log_in(other, OWN)
 
 
-async def test_tokens_and_other_users_need_no_password_change(first: DeskStation) -> None:
+async def test_tokens_and_other_users_need_no_password_change(first: InProcessStation) -> None:
     async with first.client(Role.ADMINISTRATOR) as program:
         assert (await program.get("/users")).status_code == 200
     _, secret = first.services.accounts.add_token("first", "t", Role.ADMINISTRATOR, None)
@@ -67,7 +67,7 @@ async def test_tokens_and_other_users_need_no_password_change(first: DeskStation
         assert (await program.get("/users")).status_code == 200
 
 
-async def test_replay_station_requires_no_password_change(first: DeskStation) -> None:
+async def test_replay_station_requires_no_password_change(first: InProcessStation) -> None:
     """It could not keep it."""
     services = dataclasses.replace(first.services, is_replay_only=True)
     first.app.state.services = services

@@ -17,12 +17,12 @@ from base_station.api.attempt_limiter import AttemptLimiter
 from base_station.api.login_throttle import LoginThrottle
 from base_station.api.problems import Problem
 from base_station.storage.db.records import Records
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 
 HERE = "192.0.2.1"
 
 
-class Seconds:
+class SteppedClock:
     """A clock that nobody sets."""
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ def refused(check: Callable[[], object]) -> bool:
     return False
 
 
-async def test_login_attempts_are_limited(station: DeskStation) -> None:
+async def test_login_attempts_are_limited(station: InProcessStation) -> None:
     async with station.client() as client:
         wrong = {"username": "commander", "password": "guess"}
         answers = [(await client.post("/login", json=wrong)) for _ in range(12)]
@@ -51,7 +51,7 @@ async def test_login_attempts_are_limited(station: DeskStation) -> None:
         assert (await client.post("/login", json=right)).status_code == 429
 
 
-async def test_wrong_name_and_wrong_password_get_the_same_answer(station: DeskStation) -> None:
+async def test_wrong_name_and_wrong_password_get_the_same_answer(station: InProcessStation) -> None:
     async with station.client() as client:
         one = await client.post("/login", json={"username": "commander", "password": "x"})
         other = await client.post("/login", json={"username": "nobody", "password": "x"})
@@ -59,7 +59,7 @@ async def test_wrong_name_and_wrong_password_get_the_same_answer(station: DeskSt
 
 
 async def test_unknown_name_takes_the_same_time_as_a_known_one(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One verification of a hash that was made with the same parameters."""
     costs: list[str] = []
@@ -97,7 +97,7 @@ def test_limit_holds_for_all_addresses_of_a_network(addresses: list[str]) -> Non
 
 
 async def test_limit_ignores_proxy_headers(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with station.client() as client:
         wrong = {"username": "commander", "password": "guess"}
@@ -111,7 +111,7 @@ async def test_limit_ignores_proxy_headers(
 def test_limit_ends_after_a_minute_independent_of_the_wall_clock(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    seconds, wall_s = Seconds(), time.time()
+    seconds, wall_s = SteppedClock(), time.time()
     throttle = LoginThrottle(seconds)
     for _ in range(10):
         throttle.check(HERE, "commander")
@@ -125,14 +125,14 @@ def test_limit_ends_after_a_minute_independent_of_the_wall_clock(
 
 
 def test_limit_of_a_name_blocks_no_other_name_of_the_network() -> None:
-    throttle = LoginThrottle(Seconds())
+    throttle = LoginThrottle(SteppedClock())
     for _ in range(100):
         refused(lambda: throttle.check(HERE, "dispatch"))
     throttle.check(HERE, "commander")
 
 
 def test_all_names_of_a_network_share_a_limit() -> None:
-    throttle = LoginThrottle(Seconds())
+    throttle = LoginThrottle(SteppedClock())
     for number in range(60):
         throttle.check(HERE, f"user {number}")
     assert refused(lambda: throttle.check(HERE, "commander"))
@@ -141,7 +141,7 @@ def test_all_names_of_a_network_share_a_limit() -> None:
 
 
 def test_old_attempts_are_removed_from_memory() -> None:
-    seconds = Seconds()
+    seconds = SteppedClock()
     tries = AttemptLimiter(10, 60.0, seconds)
     for number in range(100):
         tries.record(f"user {number}")
@@ -151,7 +151,7 @@ def test_old_attempts_are_removed_from_memory() -> None:
 
 
 async def test_login_transfers_are_limited_separately(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     accounts = station.services.accounts
     session = accounts.log_in("commander", PASSWORD) or ""
@@ -166,7 +166,7 @@ async def test_login_transfers_are_limited_separately(
     assert [one.status_code for one in answers] == [401] * 60 + [429]
 
 
-async def test_attempts_at_the_old_password_are_limited(station: DeskStation) -> None:
+async def test_attempts_at_the_old_password_are_limited(station: InProcessStation) -> None:
     guess = {"old_password": "guess", "new_password": f"{PASSWORD} 2"}
     async with station.client(Role.VIEWER) as client:
         answers = [await client.post("/me/password", json=guess) for _ in range(11)]
@@ -174,7 +174,7 @@ async def test_attempts_at_the_old_password_are_limited(station: DeskStation) ->
 
 
 def test_name_has_a_limit_over_all_networks() -> None:
-    throttle = LoginThrottle(Seconds())
+    throttle = LoginThrottle(SteppedClock())
     for number in range(30):
         throttle.check(f"192.0.2.{number}", "commander")
     assert refused(lambda: throttle.check("192.0.2.99", "commander"))
@@ -182,7 +182,7 @@ def test_name_has_a_limit_over_all_networks() -> None:
 
 
 def test_known_network_can_log_in_while_others_guess() -> None:
-    throttle = LoginThrottle(Seconds())
+    throttle = LoginThrottle(SteppedClock())
     assert throttle.check(HERE, "commander") is False
     throttle.record_login(HERE, "commander")
     for number in range(100, 140):
@@ -194,7 +194,7 @@ def test_known_network_can_log_in_while_others_guess() -> None:
 
 
 async def test_blocked_network_is_refused_before_its_request_is_read(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     throttle: LoginThrottle = station.app.state.login_throttle
     for number in range(60):
@@ -220,7 +220,7 @@ async def test_waiting_logins_are_limited_with_places_for_known_networks() -> No
 
 
 async def test_large_reads_do_not_use_all_threads(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The framework has forty of them for all routes."""
     station.hub.connect(asyncio.get_running_loop(), station.drive)

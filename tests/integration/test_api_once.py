@@ -14,7 +14,7 @@ from base_station.api import services
 from base_station.engine.ports import ActionResult
 from shared.clock import ManualClock
 from shared.messages.station import ReportProblem
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 PIN = {"unit_id": "FF-01", "north_m": 1.0, "east_m": 2.0}
@@ -22,7 +22,9 @@ KEY = {"Idempotency-Key": '"8e03978e-40d5-43dd-bc93-6894a57f9324"'}
 
 
 @pytest_asyncio.fixture
-async def commander(station: DeskStation, clock: ManualClock) -> AsyncIterator[httpx.AsyncClient]:
+async def commander(
+    station: InProcessStation, clock: ManualClock
+) -> AsyncIterator[httpx.AsyncClient]:
     """With a unit that somebody wears."""
     async with station.client(Role.COMMANDER) as client:
         person = (await client.post("/people", json={"name": "Ada", "crew": "A"})).json()
@@ -88,7 +90,7 @@ async def test_key_of_another_request_is_refused(
 
 
 async def test_same_body_for_another_object_is_another_request(
-    station: DeskStation, commander: httpx.AsyncClient
+    station: InProcessStation, commander: httpx.AsyncClient
 ) -> None:
     station.drive.submit("station", ReportProblem("log", "It fails"))
     station.projection.flush()
@@ -101,7 +103,9 @@ async def test_same_body_for_another_object_is_another_request(
     assert (await commander.get(path)).json()["state"] == "acknowledged"
 
 
-async def test_a_person_is_added_once(station: DeskStation, commander: httpx.AsyncClient) -> None:
+async def test_a_person_is_added_once(
+    station: InProcessStation, commander: httpx.AsyncClient
+) -> None:
     mia = {"name": "Mia", "crew": "A"}
     first = await commander.post("/people", json=mia, headers=KEY)
     assert first.status_code == 201, first.text
@@ -118,7 +122,7 @@ async def test_a_person_is_added_once(station: DeskStation, commander: httpx.Asy
 
 
 async def test_repeated_rename_keeps_state_and_roster_consistent(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     """To change is to say how it is to be: again is no second time, and may be later."""
     (ada,) = (await commander.get("/people")).json()
@@ -132,7 +136,7 @@ async def test_repeated_rename_keeps_state_and_roster_consistent(
 
 
 async def test_keys_of_different_users_are_independent(
-    station: DeskStation, commander: httpx.AsyncClient
+    station: InProcessStation, commander: httpx.AsyncClient
 ) -> None:
     mine = (await commander.post("/commands", json=EVACUATE, headers=KEY)).json()
     async with station.client(Role.ADMINISTRATOR) as another:
@@ -155,7 +159,7 @@ async def test_invalid_key_is_refused_with_a_reason(commander: httpx.AsyncClient
 
 
 async def test_timeout_with_a_key_advises_to_repeat_the_request(
-    station: DeskStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     waiting: Future[ActionResult] = Future()
     monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
@@ -200,7 +204,7 @@ async def test_schema_describes_the_key_for_every_action(
 
 
 async def test_outcome_of_a_key_can_be_queried(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     path = "/idempotency-keys/8e03978e-40d5-43dd-bc93-6894a57f9324"
     assert (await commander.get(path)).status_code == 404

@@ -12,7 +12,7 @@ from base_station.accounts.principals import Role
 from base_station.storage.db import models
 from base_station.storage.db.store import Store
 from shared.clock import NS_PER_MS
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 INCIDENT = "i-0"
 START_MS = 1_000
@@ -74,7 +74,7 @@ def entries(t_ns: int, number: str) -> list[models.Base]:
 
 
 @pytest.mark.parametrize("path", LISTS)
-async def test_pages_contain_every_entry_once(station: DeskStation, path: str) -> None:
+async def test_pages_contain_every_entry_once(station: InProcessStation, path: str) -> None:
     fill(station.store, TIMES_NS)
     name, time = LISTS[path]
     async with station.client(Role.ADMINISTRATOR) as client:
@@ -91,7 +91,7 @@ async def test_pages_contain_every_entry_once(station: DeskStation, path: str) -
     assert all(len(page) == 2 or page[1][time] == page[-1][time] for page in pages[:-1])
 
 
-async def test_search_results_are_paged(station: DeskStation) -> None:
+async def test_search_results_are_paged(station: InProcessStation) -> None:
     fill(station.store, TIMES_NS)
     async with station.client(Role.VIEWER) as client:
 
@@ -114,7 +114,7 @@ async def test_search_results_are_paged(station: DeskStation) -> None:
 
 
 @pytest.mark.parametrize("path", LISTS)
-async def test_page_without_a_limit_is_bounded(station: DeskStation, path: str) -> None:
+async def test_page_without_a_limit_is_bounded(station: InProcessStation, path: str) -> None:
     fill(station.store, [(number + 1) * NS_PER_MS for number in range(150)])
     async with station.client(Role.ADMINISTRATOR) as client:
         assert len((await client.get(path)).json()) == 100
@@ -123,7 +123,7 @@ async def test_page_without_a_limit_is_bounded(station: DeskStation, path: str) 
             assert answer.status_code == 422
 
 
-async def test_every_list_is_paged_or_bounded_otherwise(station: DeskStation) -> None:
+async def test_every_list_is_paged_or_bounded_otherwise(station: InProcessStation) -> None:
     async with station.client() as client:
         document = (await client.get("/openapi.json")).json()
     unpaged = set()

@@ -7,7 +7,7 @@ from typing import Any
 import httpx
 
 from base_station.accounts.principals import Role
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 _CREWS = "Name;Crew\nAda;Engine 1\nJürgen Groß;Engine 1\n"
 
@@ -22,7 +22,7 @@ async def crews(client: httpx.AsyncClient) -> dict[str, tuple[str, str]]:
 
 
 async def test_preview_and_repeated_import_change_nothing(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
         await client.post("/people", json={"name": "ada", "crew": "Old", "role": "Officer"})
@@ -37,7 +37,7 @@ async def test_preview_and_repeated_import_change_nothing(
         assert await crews(client) == after
 
 
-async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
+async def test_a_file_with_a_fault_adds_no_person(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         for _ in range(2):
             await client.post("/people", json={"name": "Ada"})
@@ -52,7 +52,7 @@ async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
         assert "more than 2000 people" in many.json()["detail"]
 
 
-async def test_wearer_is_shown_with_the_imported_crew(station: DeskStation) -> None:
+async def test_wearer_is_shown_with_the_imported_crew(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         person = (await client.post("/people", json={"name": "Ada"})).json()
         await client.post("/units", json={"unit_id": "FF-01"})

@@ -12,11 +12,14 @@ from base_station.accounts.principals import Role
 from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 
 async def walk(
-    station: DeskStation, clock: ManualClock, commander: httpx.AsyncClient, make_position: object
+    station: InProcessStation,
+    clock: ManualClock,
+    commander: httpx.AsyncClient,
+    make_position: object,
 ) -> None:
     """Two registered units walk 60 m north side by side."""
     for unit_id in ("FF-01", "FF-02"):
@@ -37,7 +40,7 @@ async def walk(
 
 
 async def test_a_pin_is_set_moved_and_removed(
-    station: DeskStation, clock: ManualClock, make_position: object
+    station: InProcessStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await walk(station, clock, commander, make_position)
@@ -68,7 +71,7 @@ async def test_a_pin_is_set_moved_and_removed(
 
 
 async def test_audit_names_the_units_of_a_removed_pin(
-    station: DeskStation, clock: ManualClock, make_position: object
+    station: InProcessStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await walk(station, clock, commander, make_position)
@@ -95,7 +98,7 @@ async def test_audit_names_the_units_of_a_removed_pin(
 
 
 async def test_moved_pin_keeps_its_omitted_fields(
-    station: DeskStation, clock: ManualClock, make_position: object
+    station: InProcessStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await walk(station, clock, commander, make_position)
@@ -122,7 +125,7 @@ async def test_moved_pin_keeps_its_omitted_fields(
 
 
 async def test_units_start_together_and_meet(
-    station: DeskStation, clock: ManualClock, make_position: object
+    station: InProcessStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await walk(station, clock, commander, make_position)
@@ -144,7 +147,7 @@ async def test_units_start_together_and_meet(
         assert [pin["kind"] for pin in (await commander.get("/pins")).json()] == ["meeting"]
 
 
-async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> None:
+async def test_beacons_are_placed_moved_and_removed(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as commander:
         placed = await commander.put("/beacons/door-3", json={"north_m": 3.0, "east_m": 4.0})
         assert placed.status_code == 200, placed.text
@@ -170,7 +173,7 @@ async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> Non
     ],
 )
 async def test_invalid_pin_is_refused_with_a_reason(
-    station: DeskStation,
+    station: InProcessStation,
     clock: ManualClock,
     make_position: object,
     changes: dict[str, object],
@@ -186,7 +189,7 @@ async def test_invalid_pin_is_refused_with_a_reason(
         assert (await commander.get("/pins")).json() == []
 
 
-async def test_viewer_reads_pins_and_sets_none(station: DeskStation) -> None:
+async def test_viewer_reads_pins_and_sets_none(station: InProcessStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.get("/pins")).status_code == 200
         body = {"unit_id": "FF-01", "north_m": 0.0, "east_m": 0.0}

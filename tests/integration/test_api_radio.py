@@ -15,7 +15,7 @@ from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.mcap_log import SegmentWriter, audio_topic
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 OPENED_NS = 1_800_000_000 * NS_PER_S
 OPENED_MS = OPENED_NS // NS_PER_MS
@@ -23,7 +23,7 @@ ADDRESS = "/incidents/i-1/radio"
 
 
 @pytest.fixture
-def station(station: DeskStation, tmp_path: Path) -> DeskStation:
+def station(station: InProcessStation, tmp_path: Path) -> InProcessStation:
     """With an incident of a minute, of which 12 s are recorded from its 10th second on."""
     with station.store.write() as session:
         closed_ns = OPENED_NS + 60 * NS_PER_S
@@ -50,7 +50,9 @@ def station(station: DeskStation, tmp_path: Path) -> DeskStation:
     return station
 
 
-async def test_spans_of_recording_and_voice_are_listed_by_channel(station: DeskStation) -> None:
+async def test_spans_of_recording_and_voice_are_listed_by_channel(
+    station: InProcessStation,
+) -> None:
     async with station.client(Role.VIEWER) as viewer:
         answer = await viewer.get(ADDRESS)
         assert answer.json() == {
@@ -68,7 +70,7 @@ async def test_spans_of_recording_and_voice_are_listed_by_channel(station: DeskS
 
 
 async def test_audio_is_served_in_ranges_and_the_audit_names_the_listener(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     window = {"from_ms": OPENED_MS + 5_000, "length_ms": 20_000}
     async with station.client(Role.COMMANDER) as client:
@@ -123,7 +125,7 @@ async def test_audio_is_served_in_ranges_and_the_audit_names_the_listener(
     ],
 )
 async def test_invalid_request_is_refused_with_a_reason(
-    station: DeskStation, channel: str, from_s: int, length_s: int, status: int, words: str
+    station: InProcessStation, channel: str, from_s: int, length_s: int, status: int, words: str
 ) -> None:
     window = {"from_ms": OPENED_MS + from_s * 1_000, "length_ms": length_s * 1_000}
     async with station.client(Role.COMMANDER) as client:
@@ -133,7 +135,7 @@ async def test_invalid_request_is_refused_with_a_reason(
 
 
 async def test_exported_incident_has_audio_for_permitted_users_only(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     address = "/incidents/i-1/incident.mcap"
     async with station.client(Role.VIEWER) as viewer:

@@ -15,14 +15,14 @@ from base_station.accounts.principals import Role
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import ManualClock
 from shared.messages.station import RegisterUnit
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 WINDOW = {"unit_id": "FF-01", "from_ms": 1_000, "to_ms": 2_000}
 
 
 @pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[InProcessStation]:
+    station = InProcessStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     station.services.perform("chief", RegisterUnit("FF-01", "one"))
     with TransferQueue(lambda *_: None, tmp_path / "recordings", clock) as desk:
@@ -38,7 +38,7 @@ async def pulls(client: httpx.AsyncClient) -> list[dict[str, object]]:
     return listed
 
 
-async def test_commander_starts_reads_and_stops_a_transfer(station: DeskStation) -> None:
+async def test_commander_starts_reads_and_stops_a_transfer(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         asked = await client.post("/recordings", json=WINDOW)
         assert asked.status_code == 202
@@ -57,7 +57,7 @@ async def test_commander_starts_reads_and_stops_a_transfer(station: DeskStation)
     assert ("commander", "StoppedRecording") in done
 
 
-async def test_viewer_reads_transfers_and_starts_none(station: DeskStation) -> None:
+async def test_viewer_reads_transfers_and_starts_none(station: InProcessStation) -> None:
     async with station.client(Role.VIEWER) as client:
         assert await pulls(client) == []
         assert (await client.post("/recordings", json=WINDOW)).status_code == 403
@@ -76,7 +76,7 @@ async def test_viewer_reads_transfers_and_starts_none(station: DeskStation) -> N
     ],
 )
 async def test_invalid_request_is_refused_with_a_reason(
-    station: DeskStation, form: dict[str, object], code: int, reported: str
+    station: InProcessStation, form: dict[str, object], code: int, reported: str
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
         answer = await client.post("/recordings", json=form)
@@ -84,7 +84,7 @@ async def test_invalid_request_is_refused_with_a_reason(
     assert reported in answer.text
 
 
-async def test_second_transfer_of_a_unit_is_refused(station: DeskStation) -> None:
+async def test_second_transfer_of_a_unit_is_refused(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         assert (await client.post("/recordings", json=WINDOW)).status_code == 202
         again = await client.post("/recordings", json=WINDOW)

@@ -12,14 +12,14 @@ from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.window import Window
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.recording_replay import NotedReplay
 
 INCIDENT = IncidentRow(incident_id="i-1", name="Kitchen", opened_ns=0)
 
 
 @pytest.fixture
-def replays(station: DeskStation) -> Replays:
+def replays(station: InProcessStation) -> Replays:
     replays = Replays(lambda *_: NotedReplay())
     station.services = dataclasses.replace(station.services, replays=replays)
     station.app.state.services = station.services
@@ -34,7 +34,7 @@ def begun_by(replays: Replays, user: str) -> tuple[str, NotedReplay]:
 
 
 async def test_viewer_controls_and_ends_only_the_own_replay(
-    station: DeskStation, replays: Replays
+    station: InProcessStation, replays: Replays
 ) -> None:
     own, own_player = begun_by(replays, "viewer")
     others, others_player = begun_by(replays, "commander")
@@ -57,7 +57,7 @@ async def test_viewer_controls_and_ends_only_the_own_replay(
 
 @pytest.mark.parametrize("role", [Role.COMMANDER, Role.ADMINISTRATOR])
 async def test_commander_ends_any_replay_and_controls_only_the_own(
-    station: DeskStation, replays: Replays, role: Role
+    station: InProcessStation, replays: Replays, role: Role
 ) -> None:
     others, player = begun_by(replays, "viewer")
     async with station.client(role) as commander:
@@ -71,7 +71,7 @@ async def test_commander_ends_any_replay_and_controls_only_the_own(
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.ADMINISTRATOR])
 async def test_replay_of_a_replay_station_is_shared_and_cannot_be_ended(
-    station: DeskStation, replays: Replays, role: Role
+    station: InProcessStation, replays: Replays, role: Role
 ) -> None:
     """There is nothing behind it: the console would show a picture that stands."""
     path, player = begun_by(replays, "")
@@ -85,7 +85,7 @@ async def test_replay_of_a_replay_station_is_shared_and_cannot_be_ended(
 
 
 async def test_replay_belongs_to_the_user_who_starts_it(
-    station: DeskStation, replays: Replays
+    station: InProcessStation, replays: Replays
 ) -> None:
     station.app.state.loop = asyncio.get_running_loop()
     async with station.client(Role.COMMANDER) as commander:

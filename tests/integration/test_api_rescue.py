@@ -13,7 +13,7 @@ from base_station.accounts.principals import Role
 from base_station.api import route_finder
 from shared.clock import NS_PER_S, ManualClock
 from shared.messages import EventKind, Header, Position, UnitEvent
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 pytestmark = pytest.mark.asyncio
 UNITS = ("FF-01", "FF-02", "FF-03", "FF-04", "FF-05")
@@ -21,7 +21,7 @@ UNITS = ("FF-01", "FF-02", "FF-03", "FF-04", "FF-05")
 
 @pytest_asyncio.fixture
 async def commander(
-    station: DeskStation, clock: ManualClock, make_position: Callable[..., Position]
+    station: InProcessStation, clock: ManualClock, make_position: Callable[..., Position]
 ) -> AsyncIterator[httpx.AsyncClient]:
     """Five members came in at one place and walked north, each ten metres less; FF-01 is the
     farthest.
@@ -69,7 +69,7 @@ async def test_routes_are_of_the_three_nearest_and_any_named_rescuer(
 
 
 async def test_endangered_member_is_no_rescuer(
-    commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+    commander: httpx.AsyncClient, station: InProcessStation, clock: ManualClock
 ) -> None:
     clock.advance(1.0)
     header = Header("FF-02", 7, 90, 70 * NS_PER_S)
@@ -80,7 +80,7 @@ async def test_endangered_member_is_no_rescuer(
 
 async def test_route_without_a_known_way_is_marked_as_a_straight_line(
     commander: httpx.AsyncClient,
-    station: DeskStation,
+    station: InProcessStation,
     clock: ManualClock,
     make_position: Callable[..., Position],
 ) -> None:
@@ -117,7 +117,7 @@ async def test_unknown_unit_and_unit_without_position_are_refused(
 
 async def test_legs_of_the_route_are_sent_as_the_rescuer_advances(
     commander: httpx.AsyncClient,
-    station: DeskStation,
+    station: InProcessStation,
     clock: ManualClock,
     make_position: Callable[..., Position],
     monkeypatch: pytest.MonkeyPatch,
@@ -155,7 +155,7 @@ async def test_legs_of_the_route_are_sent_as_the_rescuer_advances(
 
 
 async def test_guidance_ends_with_the_alarms_of_the_member(
-    commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+    commander: httpx.AsyncClient, station: InProcessStation, clock: ManualClock
 ) -> None:
     clock.advance(1.0)
     header = Header("FF-01", 7, 90, 70 * NS_PER_S)

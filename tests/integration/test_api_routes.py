@@ -26,7 +26,7 @@ from base_station.views.wire import StandbyView
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from tests.rig import message_factory
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 from tests.rig.waiting import until
 
 V, C, A = Role
@@ -121,7 +121,7 @@ PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": 
 Do = Callable[..., Awaitable[Any]]
 
 
-class HaStatus:
+class FixedHaStatus:
     def view(self) -> StandbyView:
         return StandbyView("a", "active", ORIGIN, "b", "standby", "", in_step=True)
 
@@ -133,14 +133,14 @@ class HaStatus:
 
 
 @pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
-    station = DeskStation(tmp_path, clock)
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[InProcessStation]:
+    station = InProcessStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     with TransferQueue(lambda *_: None, tmp_path / "recordings", clock) as desk:
         pki = PkiFolder(tmp_path)
         pki.create("Test", [], ["tls/192.0.2.7:7447"])
         services = dataclasses.replace(
-            station.services, recordings=desk, ha_status=HaStatus(), pki=pki
+            station.services, recordings=desk, ha_status=FixedHaStatus(), pki=pki
         )
         station.services = station.app.state.services = services
         yield station
@@ -168,7 +168,7 @@ def test_the_tables_name_every_route_and_socket() -> None:
     } == SOCKETS
 
 
-async def test_each_route_requires_its_role(station: DeskStation) -> None:
+async def test_each_route_requires_its_role(station: InProcessStation) -> None:
     for role in (None, *Role):
         async with station.client(role) as client:
             for route, least in (one for routes in LEAST.values() for one in routes.items()):
@@ -185,7 +185,7 @@ async def test_each_route_requires_its_role(station: DeskStation) -> None:
                     assert answer.status_code not in (401, 403), (route, role)
 
 
-async def test_a_token_for_another_part_opens_no_route(station: DeskStation) -> None:
+async def test_a_token_for_another_part_opens_no_route(station: InProcessStation) -> None:
     accounts = station.services.accounts
     for tag, routes in LEAST.items():
         others = {scope.value for scope in Scope} - {tag}
@@ -200,7 +200,9 @@ async def test_a_token_for_another_part_opens_no_route(station: DeskStation) -> 
                     assert "This token is for" in answer.json()["detail"], route
 
 
-async def test_page_of_another_origin_changes_nothing_by_any_route(station: DeskStation) -> None:
+async def test_page_of_another_origin_changes_nothing_by_any_route(
+    station: InProcessStation,
+) -> None:
     async with station.client() as browser:
         browser.headers["origin"] = ORIGIN
         credentials = {"username": "administrator", "password": PASSWORD}
@@ -220,9 +222,9 @@ async def test_page_of_another_origin_changes_nothing_by_any_route(station: Desk
 
 
 async def test_a_standby_changes_nothing_by_any_route(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(HaStatus, "refusal", lambda _: "this is the standby")
+    monkeypatch.setattr(FixedHaStatus, "refusal", lambda _: "this is the standby")
     async with station.client(Role.ADMINISTRATOR) as client:
         for route in CHANGING:
             method, path = route.split()
@@ -232,7 +234,7 @@ async def test_a_standby_changes_nothing_by_any_route(
 
 
 async def test_replay_station_refuses_changes_by_any_route(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     services = dataclasses.replace(station.services, is_replay_only=True)
     station.app.state.services = services
@@ -244,10 +246,12 @@ async def test_replay_station_refuses_changes_by_any_route(
             assert refused == (route not in WITHOUT_CHANGES), route
 
 
-class Story:
+class EveryAction:
     """Somebody who does everything once, and looks what the audit says of it."""
 
-    def __init__(self, station: DeskStation, client: httpx.AsyncClient, clock: ManualClock) -> None:
+    def __init__(
+        self, station: InProcessStation, client: httpx.AsyncClient, clock: ManualClock
+    ) -> None:
         self._station = station
         self._clock = clock
         self._client = client
@@ -277,12 +281,12 @@ class Story:
 
 
 async def test_every_changing_route_is_in_the_audit(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     async with station.client() as client:
         client.headers["origin"] = ORIGIN
-        story = Story(station, client, clock)
-        do = story.do
+        actions = EveryAction(station, client, clock)
+        do = actions.do
         await do("POST /login", {"username": "administrator", "password": PASSWORD})
         await act_on_accounts(do)
         await act_on_an_incident(do, station)
@@ -293,7 +297,7 @@ async def test_every_changing_route_is_in_the_audit(
         await do("POST /me/password", changed)
         await do("POST /login", {"username": "administrator", "password": f"{PASSWORD} 2"})
         await do("POST /logout")
-    assert set(CHANGING) - story.done == {
+    assert set(CHANGING) - actions.done == {
         # They need a log: test_served_past.py and test_erasure_service.py look for their entries.
         "POST /replays",
         "POST /replays/{replay_id}",
@@ -319,7 +323,7 @@ async def act_on_dispatches(do: Do) -> None:
     await do("POST /dispatch/alerts", f"<alert>{names}<status>Test</status></alert>".encode())
 
 
-async def act_on_an_incident(do: Do, station: DeskStation) -> None:
+async def act_on_an_incident(do: Do, station: InProcessStation) -> None:
     unit, other = {"unit_id": "FF-01"}, {"unit_id": "FF-02"}
     await do("POST /units", unit)
     await do("POST /units", other)
@@ -371,7 +375,7 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("DELETE /people/{person_id}", person_id=gone)
 
 
-async def act_on_imports(do: Do, station: DeskStation, incident_id: str) -> None:
+async def act_on_imports(do: Do, station: InProcessStation, incident_id: str) -> None:
     now = datetime.fromtimestamp(station.services.clock.utc_ns() / NS_PER_S, UTC).isoformat()
     track = f'<gpx><wpt lat="48" lon="11"><time>{now}</time></wpt></gpx>'.encode()
     adding = "POST /incidents/{incident_id}/imports"

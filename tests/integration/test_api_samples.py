@@ -19,8 +19,8 @@ from shared.channels import DESCRIPTION, IMU, NO_TRACKER
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import decode, encode
 from shared.messages import Header, Message, RawImu, UnitDescription
-from tests.rig.bus_ends import Heard
-from tests.rig.desk_station import DeskStation
+from tests.rig.bus_ends import ReceivedMessages
+from tests.rig.in_process_station import InProcessStation
 
 U = "PHONE-1"
 PATH = f"/units/{U}/samples"
@@ -57,7 +57,7 @@ def delimited(messages: Sequence[Message]) -> bytes:
 
 
 @pytest.fixture
-async def node(station: DeskStation, browser: httpx.AsyncClient) -> httpx.AsyncClient:
+async def node(station: InProcessStation, browser: httpx.AsyncClient) -> httpx.AsyncClient:
     """A client with the token of the registered unit."""
     registered = await browser.post("/units", json={"unit_id": U})
     assert registered.status_code == 201, registered.text
@@ -70,22 +70,22 @@ async def node(station: DeskStation, browser: httpx.AsyncClient) -> httpx.AsyncC
 
 
 @pytest.fixture
-def received(station: DeskStation) -> Heard:
+def received(station: InProcessStation) -> ReceivedMessages:
     """Messages that a tracking agent receives."""
-    received = Heard()
+    received = ReceivedMessages()
     bus = station.router.attach_station()
     for channel in (IMU, DESCRIPTION):
         bus.subscribe(channel.key(U), received)
     return received
 
 
-def published(received: Heard) -> list[RawImu]:
+def published(received: ReceivedMessages) -> list[RawImu]:
     messages = (decode(IMU, payload) for key, payload in received.samples if key == IMU.key(U))
     return [message for message in messages if isinstance(message, RawImu)]
 
 
 async def test_posted_samples_are_published_on_the_bus(
-    station: DeskStation, node: httpx.AsyncClient, received: Heard
+    station: InProcessStation, node: httpx.AsyncClient, received: ReceivedMessages
 ) -> None:
     answer = await node.post(PATH, json=body(batch(1), batch(2)))
     assert answer.status_code == 200
@@ -110,7 +110,7 @@ async def test_a_batch_that_is_sent_again_is_kept_once(node: httpx.AsyncClient) 
 
 
 async def test_messages_of_the_bus_are_published_unchanged(
-    node: httpx.AsyncClient, received: Heard
+    node: httpx.AsyncClient, received: ReceivedMessages
 ) -> None:
     sent = [raw(1), raw(2)]
     answer = await node.post(PATH, content=delimited(sent), headers=PROTOBUF)
@@ -119,7 +119,7 @@ async def test_messages_of_the_bus_are_published_unchanged(
 
 
 async def test_missing_value_and_further_sensors_are_forwarded(
-    node: httpx.AsyncClient, received: Heard
+    node: httpx.AsyncClient, received: ReceivedMessages
 ) -> None:
     sent = batch(
         1,
@@ -152,7 +152,7 @@ async def test_missing_value_and_further_sensors_are_forwarded(
     ],
 )
 async def test_invalid_samples_are_refused_with_a_reason(
-    node: httpx.AsyncClient, received: Heard, wrong: dict[str, Any], sentence: str
+    node: httpx.AsyncClient, received: ReceivedMessages, wrong: dict[str, Any], sentence: str
 ) -> None:
     answer = await node.post(PATH, json=body(wrong))
     assert answer.status_code == 422
@@ -208,7 +208,7 @@ async def test_excess_of_the_rate_limit_is_refused_with_a_wait(
 
 
 async def test_token_of_a_unit_is_limited_to_its_samples(
-    station: DeskStation, node: httpx.AsyncClient, browser: httpx.AsyncClient
+    station: InProcessStation, node: httpx.AsyncClient, browser: httpx.AsyncClient
 ) -> None:
     await browser.post("/units", json={"unit_id": "FF-02"})
     other = await node.post("/units/FF-02/samples", json=body(batch(1)))
@@ -223,7 +223,7 @@ async def test_token_of_a_unit_is_limited_to_its_samples(
 
 
 async def test_a_token_is_listed_without_its_secret_and_ends_when_it_is_removed(
-    station: DeskStation, node: httpx.AsyncClient
+    station: InProcessStation, node: httpx.AsyncClient
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         [listed] = (await administrator.get(TOKENS)).json()
@@ -239,7 +239,7 @@ async def test_a_token_is_listed_without_its_secret_and_ends_when_it_is_removed(
 
 
 async def test_token_survives_its_makers_password_but_not_its_expiry_or_maker(
-    station: DeskStation, node: httpx.AsyncClient, clock: ManualClock
+    station: InProcessStation, node: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     accounts = station.services.accounts
     accounts.change_user("administrator", "another password", None)
@@ -254,7 +254,7 @@ async def test_token_survives_its_makers_password_but_not_its_expiry_or_maker(
 
 
 async def test_tokens_of_a_unit_are_limited_and_need_its_registration(
-    station: DeskStation, node: httpx.AsyncClient
+    station: InProcessStation, node: httpx.AsyncClient
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         for _ in range(MOST_OF_A_UNIT - 1):

@@ -27,7 +27,7 @@ from base_station.api.server import ConsoleServer, bind
 from base_station.engine.log_feed import FolderFeed
 from base_station.replay.timelines.unit_timeline import read_timeline
 from shared.clock import ManualClock
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 EXAMPLES = 15  # of each operation
 FRAMEWORK = re.compile("Input should|Field required|Value error|not permitted")  # its own words
@@ -49,7 +49,7 @@ MORE_THAN_TYPES = (
 def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
     """Address of a served station and an administrator's token."""
     folder: Path = tmp_path_factory.mktemp("station")
-    desk = DeskStation(folder, ManualClock())
+    desk = InProcessStation(folder, ManualClock())
     _, token = desk.services.accounts.add_token("administrator", "t", Role.ADMINISTRATOR, None)
     (folder / "log").mkdir()
     read = partial(read_timeline, desk.services.records, FolderFeed(folder / "log"))

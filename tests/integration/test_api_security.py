@@ -15,7 +15,7 @@ from base_station.api.authentication import COOKIE
 from base_station.storage.db.accounts import SESSION_S
 from base_station.storage.db.window import EVER
 from shared.clock import ManualClock
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 
 
 def shown(secret: str) -> dict[str, str]:
@@ -44,7 +44,7 @@ ROLES = [
 
 @pytest.mark.parametrize(("method", "path", "body", "least"), ROLES)
 async def test_a_role_is_enforced(
-    station: DeskStation, method: str, path: str, body: dict[str, object] | None, least: Role
+    station: InProcessStation, method: str, path: str, body: dict[str, object] | None, least: Role
 ) -> None:
     for role in (None, *Role):
         async with station.client(role) as client:
@@ -57,7 +57,7 @@ async def test_a_role_is_enforced(
             assert answer.status_code not in (401, 403)
 
 
-async def test_every_route_except_the_login_requires_a_login(station: DeskStation) -> None:
+async def test_every_route_except_the_login_requires_a_login(station: InProcessStation) -> None:
     async with station.client() as client:
         document = (await client.get("/openapi.json")).json()
         open_paths = set()
@@ -79,7 +79,7 @@ async def test_every_route_except_the_login_requires_a_login(station: DeskStatio
     }
 
 
-async def test_cookie_is_restricted_to_the_station(station: DeskStation) -> None:
+async def test_cookie_is_restricted_to_the_station(station: InProcessStation) -> None:
     async with station.client() as client:
         answer = await client.post(
             "/login", json={"username": "viewer", "password": PASSWORD}, headers={"origin": ORIGIN}
@@ -96,7 +96,7 @@ async def test_cookie_is_restricted_to_the_station(station: DeskStation) -> None
 
 
 async def test_logins_and_refusals_are_in_the_audit_with_the_address(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with station.client() as client:
         for password in ("guess", PASSWORD):
@@ -117,7 +117,7 @@ async def test_request_of_another_origin_changes_nothing(browser: httpx.AsyncCli
 
 
 async def test_cookie_without_an_origin_changes_nothing_unless_with_a_token(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
     del browser.headers["origin"]
@@ -159,7 +159,7 @@ async def test_secrets_are_not_in_the_database(browser: httpx.AsyncClient, tmp_p
 
 
 async def test_expired_sessions_and_tickets_are_deleted(
-    station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
+    station: InProcessStation, browser: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
 ) -> None:
     def kept() -> list[int]:
         connection = sqlite3.connect(tmp_path / "station.sqlite")
@@ -177,7 +177,7 @@ async def test_expired_sessions_and_tickets_are_deleted(
     assert kept() == [1, 0]
 
 
-async def test_security_headers_are_on_every_answer(station: DeskStation) -> None:
+async def test_security_headers_are_on_every_answer(station: InProcessStation) -> None:
     async with station.client() as client:
         for path in ("/me", "/nothing", f"{ORIGIN}/", f"{ORIGIN}/nothing"):
             headers = (await client.get(path)).headers
@@ -191,7 +191,7 @@ async def test_security_headers_are_on_every_answer(station: DeskStation) -> Non
         assert (await client.get("/me")).headers["cache-control"] == "no-store"
 
 
-async def test_tls_answers_have_strict_transport_security(station: DeskStation) -> None:
+async def test_tls_answers_have_strict_transport_security(station: InProcessStation) -> None:
     services = dataclasses.replace(station.services, secure=True)
     app = create_app(services, started=lambda _: None)
     transport = httpx.ASGITransport(app)
@@ -214,7 +214,7 @@ async def test_login_ends_the_previous_session_of_the_browser(
 
 
 async def test_page_of_a_plain_origin_changes_nothing_over_tls(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     station.app.state.services = dataclasses.replace(station.services, secure=True)
     assert (await browser.post("/logout")).status_code == 403
@@ -230,7 +230,7 @@ async def test_own_page_behind_a_tls_proxy_is_accepted(
 
 
 async def test_login_is_transferred_to_the_other_station_by_a_single_use_ticket(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     ticket = (await browser.post("/hand-over")).json()["ticket"]
     async with station.client() as there:
@@ -246,7 +246,7 @@ async def test_login_is_transferred_to_the_other_station_by_a_single_use_ticket(
 
 
 async def test_a_login_lasts_half_a_day_and_a_ticket_ten_minutes(
-    browser: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+    browser: httpx.AsyncClient, station: InProcessStation, clock: ManualClock
 ) -> None:
     accounts = station.services.accounts
     answer = await browser.post("/login", json={"username": "viewer", "password": PASSWORD})

@@ -9,13 +9,13 @@ import pytest
 from base_station.accounts.principals import Role
 from base_station.api.headers import content_policy
 from base_station.views.wire import StandbyView
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 HERE, THERE = "https://b:8443", "https://a:8443"
 STANDBY = StandbyView("second", "standby", HERE, "first", "active", THERE, in_step=True)
 
 
-class HaStatus:
+class FakeHaStatus:
     def __init__(self, refusal: str | None) -> None:
         self._refusal = refusal
         self.taken_over = 0
@@ -31,9 +31,9 @@ class HaStatus:
 
 
 @pytest.fixture
-def ha_status(station: DeskStation) -> HaStatus:
+def ha_status(station: InProcessStation) -> FakeHaStatus:
     """The station is a standby from now on."""
-    ha_status = HaStatus("this is the standby: the active station is first at https://a:8443")
+    ha_status = FakeHaStatus("this is the standby: the active station is first at https://a:8443")
     station.services = dataclasses.replace(station.services, ha_status=ha_status)
     station.app.state.services = station.services
     return ha_status
@@ -41,7 +41,7 @@ def ha_status(station: DeskStation) -> HaStatus:
 
 @pytest.mark.usefixtures("ha_status")
 async def test_standby_is_readable_and_refuses_changes_with_a_reason(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as client:
         assert (await client.get("/units")).status_code == 200
@@ -53,13 +53,15 @@ async def test_standby_is_readable_and_refuses_changes_with_a_reason(
 
 
 @pytest.mark.usefixtures("ha_status")
-async def test_people_log_in_at_a_standby(station: DeskStation) -> None:
+async def test_people_log_in_at_a_standby(station: InProcessStation) -> None:
     async with station.client() as client:
         answer = await client.post("/login", json={"username": "viewer", "password": "x"})
     assert answer.status_code == 401  # asked for, and the password is wrong
 
 
-async def test_takeover_is_for_commanders_only(station: DeskStation, ha_status: HaStatus) -> None:
+async def test_takeover_is_for_commanders_only(
+    station: InProcessStation, ha_status: FakeHaStatus
+) -> None:
     for role, status in ((Role.VIEWER, 403), (Role.COMMANDER, 202)):
         async with station.client(role) as client:
             assert (await client.post("/standby/take-over")).status_code == status
@@ -67,7 +69,7 @@ async def test_takeover_is_for_commanders_only(station: DeskStation, ha_status: 
 
 
 async def test_console_of_the_other_station_can_query_the_leader(
-    station: DeskStation, ha_status: HaStatus
+    station: InProcessStation, ha_status: FakeHaStatus
 ) -> None:
     async with station.client() as client:
         answer = await client.get("/standby/leads", headers={"Origin": THERE})
@@ -77,7 +79,7 @@ async def test_console_of_the_other_station_can_query_the_leader(
         assert (await client.get("/standby/leads")).json() == {"leads": True}
 
 
-async def test_single_station_has_no_standby_status(station: DeskStation) -> None:
+async def test_single_station_has_no_standby_status(station: InProcessStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         assert (await client.get("/standby")).status_code == 404
 

@@ -27,7 +27,7 @@ from base_station.storage.db.window import Window
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.errors import StoreError
 from shared.mcap_log import segment_paths
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.reported_incident import (
     HOT_DEGC,
     HOT_FROM_S,
@@ -59,9 +59,11 @@ def store(folder: DataFolder) -> Iterator[Store]:
 
 
 @pytest_asyncio.fixture
-async def station(tmp_path: Path, folder: DataFolder, store: Store) -> AsyncIterator[DeskStation]:
+async def station(
+    tmp_path: Path, folder: DataFolder, store: Store
+) -> AsyncIterator[InProcessStation]:
     clock = ManualClock(utc_ns=START_NS + 400 * NS_PER_S)
-    station = DeskStation(tmp_path, clock)
+    station = InProcessStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     station.app.state.services = replace(
         station.services,
@@ -72,7 +74,7 @@ async def station(tmp_path: Path, folder: DataFolder, store: Store) -> AsyncIter
     station.close()
 
 
-async def timeline(station: DeskStation, unit_id: str, **span: int) -> dict[str, Any]:
+async def timeline(station: InProcessStation, unit_id: str, **span: int) -> dict[str, Any]:
     async with station.client(Role.VIEWER) as viewer:
         response = await viewer.get(f"/units/{unit_id}/timeline", params=SPAN | span)
     assert response.status_code == 200, response.text
@@ -80,7 +82,7 @@ async def timeline(station: DeskStation, unit_id: str, **span: int) -> dict[str,
     return answer
 
 
-async def refusal(station: DeskStation, unit_id: str, **span: int) -> tuple[int, str]:
+async def refusal(station: InProcessStation, unit_id: str, **span: int) -> tuple[int, str]:
     async with station.client(Role.VIEWER) as viewer:
         response = await viewer.get(f"/units/{unit_id}/timeline", params=SPAN | span)
     return response.status_code, response.json()["detail"]
@@ -93,7 +95,7 @@ def points(column: dict[str, Any]) -> list[tuple[float, float | None]]:
 
 
 @pytest.mark.asyncio
-async def test_columns_contain_measured_and_reported_values(station: DeskStation) -> None:
+async def test_columns_contain_measured_and_reported_values(station: InProcessStation) -> None:
     answer = await timeline(station, "FF-03")
     hot = [t_s for t_s, degc in points(answer["temperature_degc"]) if degc == HOT_DEGC]
     assert HOT_FROM_S <= hot[0] <= HOT_FROM_S + 4
@@ -112,7 +114,7 @@ async def test_columns_contain_measured_and_reported_values(station: DeskStation
 
 
 @pytest.mark.asyncio
-async def test_a_radio_gap_is_a_gap_of_the_columns(station: DeskStation) -> None:
+async def test_a_radio_gap_is_a_gap_of_the_columns(station: InProcessStation) -> None:
     answer = await timeline(station, "FF-02")
     (gap,) = answer["radio_gaps_ms"]
     assert [(t_ms - START_MS) / 1000 for t_ms in gap] == pytest.approx(
@@ -127,7 +129,9 @@ async def test_a_radio_gap_is_a_gap_of_the_columns(station: DeskStation) -> None
 
 
 @pytest.mark.asyncio
-async def test_timeline_refuses_unknown_units_and_limits_its_span(station: DeskStation) -> None:
+async def test_timeline_refuses_unknown_units_and_limits_its_span(
+    station: InProcessStation,
+) -> None:
     status, detail = await refusal(station, "FF-99")
     assert (status, "no unit FF-99" in detail) == (404, True)
     longest = await timeline(station, "FF-01", from_ms=0)

@@ -11,11 +11,11 @@ from base_station.api.routes import ROUTERS
 from base_station.storage.db.accounts import MOST_TOKENS
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 
 
 async def test_token_has_no_more_rights_than_its_maker(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     higher = {"name": "t", "role": "administrator"}
     assert (await browser.post("/tokens", json=higher)).status_code == 403
@@ -29,7 +29,7 @@ async def test_token_has_no_more_rights_than_its_maker(
 
 
 async def test_token_is_listed_and_removed_by_its_owner_only(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     made = (await browser.post("/tokens", json={"name": "t", "role": "viewer"})).json()
     async with station.client(Role.ADMINISTRATOR) as other:
@@ -41,7 +41,7 @@ async def test_token_is_listed_and_removed_by_its_owner_only(
 
 
 def test_tokens_of_a_user_are_limited_and_expired_ones_removed(
-    station: DeskStation, clock: ManualClock
+    station: InProcessStation, clock: ManualClock
 ) -> None:
     accounts = station.services.accounts
     soon_ns = clock.utc_ns() + NS_PER_S
@@ -58,7 +58,7 @@ def test_tokens_of_a_user_are_limited_and_expired_ones_removed(
 
 
 async def test_token_is_limited_to_its_scope(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     wanted = {"name": "dispatch", "role": "commander", "scopes": ["incidents", "tokens"]}
     made = (await browser.post("/tokens", json=wanted)).json()
@@ -78,7 +78,7 @@ async def test_token_is_limited_to_its_scope(
 
 
 async def test_token_creates_none_that_outlasts_it(
-    station: DeskStation, browser: httpx.AsyncClient, clock: ManualClock
+    station: InProcessStation, browser: httpx.AsyncClient, clock: ManualClock
 ) -> None:
     lent = {"name": "lent", "role": "viewer", "days": 2}
     made = (await browser.post("/tokens", json=lent)).json()

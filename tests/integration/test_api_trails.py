@@ -23,16 +23,16 @@ from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.messages import Header, Message, Position
 from shared.messages.station import SetAnchor
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.live_station import make_pipeline
 
 Record = tuple[int, str, bytes]
 
 
 @pytest_asyncio.fixture
-async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
+async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[InProcessStation]:
     """It keeps a log in memory of what it hears."""
-    station = DeskStation(tmp_path, clock)
+    station = InProcessStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     records: list[Record] = []
     receive = station.drive.receive
@@ -56,7 +56,7 @@ async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStati
 
 
 async def worked(
-    station: DeskStation, clock: ManualClock, position: Position, *, closed: bool
+    station: InProcessStation, clock: ManualClock, position: Position, *, closed: bool
 ) -> str:
     """An incident of a minute in which one unit walks north and is pinned."""
     async with station.client(Role.COMMANDER) as commander:
@@ -83,7 +83,7 @@ async def worked(
 
 @pytest.mark.parametrize("closed", [True, False])
 async def test_raw_shown_and_smoothed_trails_are_served(
-    station: DeskStation, clock: ManualClock, make_position, closed: bool
+    station: InProcessStation, clock: ManualClock, make_position, closed: bool
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=closed)
     async with station.client(Role.VIEWER) as viewer:
@@ -105,7 +105,7 @@ async def test_raw_shown_and_smoothed_trails_are_served(
 
 
 async def test_smoothed_trail_is_assessed_and_exported(
-    station: DeskStation, clock: ManualClock, make_position
+    station: InProcessStation, clock: ManualClock, make_position
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=True)
     station.drive.submit("chief", SetAnchor(52.0, 4.0, 0.0, 0.0))
@@ -125,7 +125,7 @@ async def test_smoothed_trail_is_assessed_and_exported(
 
 
 async def test_incident_without_received_units_has_no_trails(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     """And pins that wait: the smoother is not asked about nobody."""
     async with station.client(Role.COMMANDER) as commander:
@@ -143,7 +143,7 @@ async def test_incident_without_received_units_has_no_trails(
         assert report.json()["units"] == []
 
 
-async def test_invalid_request_is_refused_with_a_reason(station: DeskStation) -> None:
+async def test_invalid_request_is_refused_with_a_reason(station: InProcessStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         for path in ("trails", "assessment"):
             assert (await viewer.get(f"/incidents/none/{path}")).status_code == 404
@@ -152,7 +152,7 @@ async def test_invalid_request_is_refused_with_a_reason(station: DeskStation) ->
 
 
 async def test_station_without_a_log_refuses_trails(tmp_path: Path, clock: ManualClock) -> None:
-    station = DeskStation(tmp_path, clock)
+    station = InProcessStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     async with station.client(Role.COMMANDER) as commander:
         opened = await commander.post("/incidents", json={"name": "Mill Lane"})
@@ -164,7 +164,7 @@ async def test_station_without_a_log_refuses_trails(tmp_path: Path, clock: Manua
 
 
 async def test_result_is_marked_as_outdated_until_recomputed(
-    station: DeskStation, clock: ManualClock, make_position
+    station: InProcessStation, clock: ManualClock, make_position
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=True)
     async with station.client(Role.COMMANDER) as commander:
@@ -190,7 +190,7 @@ async def test_result_is_marked_as_outdated_until_recomputed(
 
 
 async def test_exported_file_names_its_kind_of_trail(
-    station: DeskStation, clock: ManualClock, make_position
+    station: InProcessStation, clock: ManualClock, make_position
 ) -> None:
     """Saved beside each other, days later they cannot be told apart otherwise."""
     incident_id = await worked(station, clock, make_position(), closed=True)

@@ -10,12 +10,12 @@ import pytest
 from base_station.accounts.principals import Role
 from base_station.storage.db.window import EVER
 from shared.errors import UserError
-from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
 
 
 @pytest.mark.parametrize("username", ["Zoë O'Neil", "a#b?c%2Fd&e", "x" * 80, "50 %"])
 async def test_every_user_that_can_be_made_can_log_in_and_be_removed(
-    station: DeskStation, username: str
+    station: InProcessStation, username: str
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator, station.client() as client:
         new = {"username": username, "password": PASSWORD, "role": "viewer"}
@@ -34,14 +34,14 @@ async def test_every_user_that_can_be_made_can_log_in_and_be_removed(
     "username", ["", " ", "day/night", ".", "..", "a\nb", "a\x7fb", "a\u202eb", "x" * 81, "\udcff"]
 )
 def test_user_name_unusable_for_login_or_address_is_refused(
-    station: DeskStation, username: str
+    station: InProcessStation, username: str
 ) -> None:
     accounts = station.services.accounts
     with pytest.raises(UserError, match="user's name is"):
         accounts.add_user(username, PASSWORD, Role.VIEWER)
 
 
-def test_password_unusable_for_login_is_refused(station: DeskStation) -> None:
+def test_password_unusable_for_login_is_refused(station: InProcessStation) -> None:
     accounts = station.services.accounts
     accounts.change_user("viewer", "x" * 256, None)
     assert accounts.log_in("viewer", "x" * 256) is not None
@@ -51,7 +51,7 @@ def test_password_unusable_for_login_is_refused(station: DeskStation) -> None:
 
 
 async def test_an_administrator_ends_sessions(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         users = {user["username"]: user for user in (await administrator.get("/users")).json()}
@@ -61,7 +61,7 @@ async def test_an_administrator_ends_sessions(
     assert (await browser.get("/me")).status_code == 401
 
 
-async def test_only_administrator_cannot_be_removed(station: DeskStation) -> None:
+async def test_only_administrator_cannot_be_removed(station: InProcessStation) -> None:
     async with station.client(Role.ADMINISTRATOR) as administrator:
         path = "/users/administrator"
         lower = await administrator.put(path, json={"role": "commander"})
@@ -78,7 +78,7 @@ async def test_only_administrator_cannot_be_removed(station: DeskStation) -> Non
 
 
 async def test_new_password_ends_other_sessions(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     async with station.client() as elsewhere:
         credentials = {"username": "commander", "password": PASSWORD}
@@ -95,7 +95,7 @@ async def test_new_password_ends_other_sessions(
 
 
 async def test_new_password_ends_the_tokens_and_a_new_role_does_not(
-    station: DeskStation,
+    station: InProcessStation,
 ) -> None:
     async with (
         station.client(Role.ADMINISTRATOR) as administrator,
@@ -112,7 +112,7 @@ async def test_new_password_ends_the_tokens_and_a_new_role_does_not(
 
 
 async def test_new_role_ends_sessions_and_limits_tokens(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     token = (await browser.post("/tokens", json={"name": "t", "role": "commander"})).json()["token"]
     async with (

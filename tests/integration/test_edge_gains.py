@@ -35,7 +35,7 @@ to = [[25, 0], [25, 25]]
 
 
 @dataclass(frozen=True)
-class Ran:
+class AgentFiles:
     """Files of an agent after its walk without a station."""
 
     described: UnitDescription  # as it would have gone over the bus
@@ -47,7 +47,7 @@ class Ran:
         return math.hypot(self.last.std_north_m, self.last.std_east_m)
 
 
-def ran(folder: Path, gain_std: float | None) -> Ran:
+def ran(folder: Path, gain_std: float | None) -> AgentFiles:
     folder.mkdir()
     scenario = folder / "square.toml"
     scenario.write_text(SCENARIO)
@@ -63,7 +63,7 @@ def ran(folder: Path, gain_std: float | None) -> Ran:
     described, last = newest(folder / "u1" / "journal.sqlite", DESCRIPTION, POSITION)
     assert isinstance(described, UnitDescription)
     assert isinstance(last, Position)
-    return Ran(described, last, BlackBoxSource(boot))
+    return AgentFiles(described, last, BlackBoxSource(boot))
 
 
 def newest(path: Path, *channels: Channel) -> list[Message]:
@@ -78,12 +78,12 @@ def newest(path: Path, *channels: Channel) -> list[Message]:
 
 
 @pytest.fixture(scope="module")
-def by_itself(tmp_path_factory) -> Ran:
+def by_itself(tmp_path_factory) -> AgentFiles:
     return ran(tmp_path_factory.mktemp("gains") / "itself", None)
 
 
 @pytest.fixture(scope="module")
-def set_wide(tmp_path_factory) -> Ran:
+def set_wide(tmp_path_factory) -> AgentFiles:
     return ran(tmp_path_factory.mktemp("gains") / "wide", UNKNOWN_STD)
 
 

@@ -42,7 +42,7 @@ from shared.messages import (
     UnitEvent,
 )
 from shared.messages.station import RegisterUnit
-from tests.rig.gps_receiver import GpsdServer, Reported, burst, gpsd_report
+from tests.rig.gps_receiver import GpsdServer, ReportedFix, burst, gpsd_report
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import TcpDevice, paced, played
 
@@ -117,8 +117,8 @@ def walked() -> tuple[ImuBatch, list[GpsSample]]:
     ]
 
 
-def stated_of(fix: GpsSample) -> Reported:
-    return Reported(
+def stated_of(fix: GpsSample) -> ReportedFix:
+    return ReportedFix(
         of_day_s=BEGAN_S + (fix.t_ns - BEGIN_NS) / NS_PER_S,
         lat_deg=fix.lat_deg,
         lon_deg=fix.lon_deg,

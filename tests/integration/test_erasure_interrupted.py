@@ -27,7 +27,7 @@ from shared.mcap_log import (
     segment_paths,
 )
 from tests.rig.erasure_folders import fails, forgetter_of, split_log
-from tests.rig.erasure_scenario import ANA, BO, Story, names_in, stored_in
+from tests.rig.erasure_scenario import ANA, BO, ErasureScenario, names_in, stored_in
 
 
 class PowerCut(BaseException):
@@ -36,8 +36,8 @@ class PowerCut(BaseException):
 
 def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None:
     """The log goes segment by segment, and the tables after it."""
-    story = Story(tmp_path / "station")
-    data = DataFolder(story.folder)
+    scenario = ErasureScenario(tmp_path / "station")
+    data = DataFolder(scenario.folder)
     split_log(data.log, 4)
     whole = sum(1 for _ in read_log(data.log))
     cuts = 0
@@ -61,8 +61,8 @@ def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None
             except PowerCut:
                 cuts += 1
     assert cuts > 4
-    assert names_in(story.stored(), ANA) == []
-    assert [payload for payload in story.ana_stated if payload in story.stored()] == []
+    assert names_in(scenario.stored(), ANA) == []
+    assert [payload for payload in scenario.ana_stated if payload in scenario.stored()] == []
     assert 0 < sum(1 for _ in read_log(data.log)) < whole
 
 

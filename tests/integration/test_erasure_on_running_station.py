@@ -147,7 +147,7 @@ def test_checkpoints_are_removed_after_the_erasure_in_memory(
     """A checkpoint saved before still contains everything."""
     data, happened = DataFolder(shutil.copytree(reported, tmp_path / "station")), list[str]()
 
-    class Acted(Future[ActionResult]):
+    class RecordingActions(Future[ActionResult]):
         def result(self, timeout: float | None = None) -> ActionResult:
             assert timeout is not None
             happened.append("acted")
@@ -158,7 +158,7 @@ def test_checkpoints_are_removed_after_the_erasure_in_memory(
     with Store(data.database) as store:
         ErasureService(
             ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()), SystemClock(),
-            NoPulls(), lambda _by, _action: Acted(),
+            NoPulls(), lambda _by, _action: RecordingActions(),
         ).incident("ada", "i1")  # fmt: skip
         assert happened == ["acted", "acted", "cleared", "cleared"]
         monkeypatch.setattr(forgetter_module, "_ACTED_WITHIN_S", 0.0)

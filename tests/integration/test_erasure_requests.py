@@ -17,19 +17,21 @@ from shared.messages.station import (
     RegisterUnit,
     SendCommand,
 )
-from tests.rig.desk_station import DeskStation
 from tests.rig.erasure_scenario import ANA, BO
+from tests.rig.in_process_station import InProcessStation
 
 
 @pytest.fixture
-def desk(tmp_path: Path, clock: ManualClock) -> Iterator[DeskStation]:
+def desk(tmp_path: Path, clock: ManualClock) -> Iterator[InProcessStation]:
     (tmp_path / "log").mkdir()
-    desk = DeskStation(tmp_path, clock)
+    desk = InProcessStation(tmp_path, clock)
     yield desk
     desk.close()
 
 
-async def test_erasure_by_the_api_needs_the_name_and_an_administrator(desk: DeskStation) -> None:
+async def test_erasure_by_the_api_needs_the_name_and_an_administrator(
+    desk: InProcessStation,
+) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     async with desk.client(Role.COMMANDER) as commander:
         person = (await commander.post("/people", json={"name": ANA})).json()
@@ -49,7 +51,7 @@ async def test_erasure_by_the_api_needs_the_name_and_an_administrator(desk: Desk
 
 
 async def test_erasure_with_an_undelivered_message_is_refused(
-    desk: DeskStation,
+    desk: InProcessStation,
 ) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     message = SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, "north door", 0.0, 600.0)
@@ -65,7 +67,7 @@ async def test_erasure_with_an_undelivered_message_is_refused(
         assert (await administrator.post(path, json={"name": ANA})).status_code == 202
 
 
-async def test_removed_person_can_be_erased(desk: DeskStation, clock: ManualClock) -> None:
+async def test_removed_person_can_be_erased(desk: InProcessStation, clock: ManualClock) -> None:
     """A commander may do that, and then everything but name and photo is still there."""
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     desk.drive.submit("chief", RegisterUnit("FF-01", "one"))
@@ -90,7 +92,9 @@ async def test_removed_person_can_be_erased(desk: DeskStation, clock: ManualCloc
         assert (await administrator.post(path, json={"name": ANA})).status_code == 404
 
 
-async def test_wearer_is_erased_after_unassignment(desk: DeskStation, clock: ManualClock) -> None:
+async def test_wearer_is_erased_after_unassignment(
+    desk: InProcessStation, clock: ManualClock
+) -> None:
     desk.hub.connect(asyncio.get_running_loop(), desk.drive)
     desk.drive.submit("chief", RegisterUnit("FF-01", "one"))
     async with desk.client(Role.ADMINISTRATOR) as administrator:

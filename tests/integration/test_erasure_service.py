@@ -36,32 +36,32 @@ from shared.messages.station import (
     Unassign,
 )
 from tests.rig import message_factory
-from tests.rig.erasure_scenario import ANA, BO, CEM, Story, forget, names_in
+from tests.rig.erasure_scenario import ANA, BO, CEM, ErasureScenario, forget, names_in
 from tests.rig.live_station import LiveStation, make_pipeline
 from tests.rig.waiting import until
 
 
 @pytest.fixture(params=["log of an earlier version", "log of this version"])
-def story(tmp_path: Path, request: pytest.FixtureRequest) -> Story:
-    return Story(tmp_path / "station", older=request.param == "log of an earlier version")
+def scenario(tmp_path: Path, request: pytest.FixtureRequest) -> ErasureScenario:
+    return ErasureScenario(tmp_path / "station", older=request.param == "log of an earlier version")
 
 
-def test_no_byte_is_left_of_a_person(story: Story) -> None:
-    before = story.stored()
+def test_no_byte_is_left_of_a_person(scenario: ErasureScenario) -> None:
+    before = scenario.stored()
     assert names_in(before, ANA)
-    assert any(piece in before for piece in pieces(story.photo))
-    assert all(payload in before for payload in story.ana_stated)
+    assert any(piece in before for piece in pieces(scenario.photo))
+    assert all(payload in before for payload in scenario.ana_stated)
 
-    forget(story, "p-77")
+    forget(scenario, "p-77")
 
-    after = story.stored()
+    after = scenario.stored()
     assert names_in(after, ANA) == []
-    assert not any(piece in after for piece in pieces(story.photo))
-    assert [payload for payload in story.ana_stated if payload in after] == []
-    of_bo = [one for one in fused_in(story) if one.unit_id == "FF-01"]
+    assert not any(piece in after for piece in pieces(scenario.photo))
+    assert [payload for payload in scenario.ana_stated if payload in after] == []
+    of_bo = [one for one in fused_in(scenario) if one.unit_id == "FF-01"]
     assert of_bo
-    assert len(of_bo) < len([one for one in fused_in(story) if one.unit_id == "FF-02"])
-    actions = [e.message.action for e in story.events() if isinstance(e.message, OperatorAction)]
+    assert len(of_bo) < len([one for one in fused_in(scenario) if one.unit_id == "FF-02"])
+    actions = [e.message.action for e in scenario.events() if isinstance(e.message, OperatorAction)]
     assert not any(isinstance(action, SetPin | SetStart) for action in actions)
 
 
@@ -70,17 +70,17 @@ def pieces(photo: bytes) -> list[bytes]:
     return [photo[at : at + 60] for at in range(0, len(photo) - 60, 500)]
 
 
-def fused_in(story: Story) -> list[FusedPosition]:
-    return [e.message for e in story.events() if isinstance(e.message, FusedPosition)]
+def fused_in(scenario: ErasureScenario) -> list[FusedPosition]:
+    return [e.message for e in scenario.events() if isinstance(e.message, FusedPosition)]
 
 
-def test_other_people_are_kept_and_replay_identically(story: Story) -> None:
-    forget(story, ANA)  # by name
+def test_other_people_are_kept_and_replay_identically(scenario: ErasureScenario) -> None:
+    forget(scenario, ANA)  # by name
 
-    kept = list(read_log(story.folder / "log"))
-    others = [one for one in story.before if "/FF-02/" in one[1]]
+    kept = list(read_log(scenario.folder / "log"))
+    others = [one for one in scenario.before if "/FF-02/" in one[1]]
     assert [one for one in kept if "/FF-02/" in one[1]] == others
-    logged = [one for one in fused_in(story) if one.unit_id == "FF-02"]
+    logged = [one for one in fused_in(scenario) if one.unit_id == "FF-02"]
     pipeline = make_pipeline()
     replayed = [
         output
@@ -97,13 +97,13 @@ def _bare(fused: FusedPosition) -> bytes:
     return encode(msgspec.structs.replace(fused, header=Header("station", 0, 0, 0)))
 
 
-def test_erased_messages_are_not_fetched_from_the_unit_again(story: Story) -> None:
-    forget(story, "p-77")
+def test_erased_messages_are_not_fetched_from_the_unit_again(scenario: ErasureScenario) -> None:
+    forget(scenario, "p-77")
     again = make_pipeline()
-    for record in read_log(story.folder / "log"):
+    for record in read_log(scenario.folder / "log"):
         again.step(event_of(*record))
     before = make_pipeline()
-    for record in story.before:
+    for record in scenario.before:
         before.step(event_of(*record))
     for unit_id in ("FF-01", "FF-02"):
         seen = [boot.seen for boot in again.state.units[unit_id].boots]
@@ -111,9 +111,9 @@ def test_erased_messages_are_not_fetched_from_the_unit_again(story: Story) -> No
         assert seen == [boot.seen for boot in before.state.units[unit_id].boots]
 
 
-def test_audit_is_kept(story: Story) -> None:
-    forget(story, "p-77")
-    with Store(story.folder / "station.sqlite") as store:
+def test_audit_is_kept(scenario: ErasureScenario) -> None:
+    forget(scenario, "p-77")
+    with Store(scenario.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
         audit = records.audit_entries(EVER)
         reported = [(entry.by, entry.action) for entry in audit]
@@ -131,11 +131,11 @@ def test_audit_is_kept(story: Story) -> None:
     assert worn == {"p-77": ERASED_TEXT, "p-bo": BO, "p-cem": CEM}
 
 
-def test_rebuilt_tables_contain_no_erased_person(story: Story) -> None:
-    forget(story, "p-77")
-    station_app.rebuild(story.folder, lambda _: None)
-    assert names_in(story.stored(), ANA) == []
-    with Store(story.folder / "station.sqlite") as store:
+def test_rebuilt_tables_contain_no_erased_person(scenario: ErasureScenario) -> None:
+    forget(scenario, "p-77")
+    station_app.rebuild(scenario.folder, lambda _: None)
+    assert names_in(scenario.stored(), ANA) == []
+    with Store(scenario.folder / "station.sqlite") as store:
         roster = Roster(store, SystemClock())
         worn = {one.person_id: roster.wearer(one).name for one in roster.assignments(0, FOREVER_NS)}
         tracked = Records(store, SystemClock()).track_units(Window(0, FOREVER_NS))
@@ -143,18 +143,18 @@ def test_rebuilt_tables_contain_no_erased_person(story: Story) -> None:
     assert list(tracked) == ["FF-01", "FF-02"]
 
 
-def test_incident_is_erased_with_all_its_members(story: Story) -> None:
-    forget(story, "i1")
-    after = story.stored()
-    assert [payload for payload in story.ana_stated if payload in after] == []
-    reported = [one.message for one in story.events()]
+def test_incident_is_erased_with_all_its_members(scenario: ErasureScenario) -> None:
+    forget(scenario, "i1")
+    after = scenario.stored()
+    assert [payload for payload in scenario.ana_stated if payload in after] == []
+    reported = [one.message for one in scenario.events()]
     assert {type(one) for one in reported if channel_of(one).direction is Direction.UP} == {
         Heartbeat
     }
-    assert fused_in(story) == []
+    assert fused_in(scenario) == []
     pipeline = make_pipeline()
     worn = []
-    for record in read_log(story.folder / "log"):
+    for record in read_log(scenario.folder / "log"):
         pipeline.step(event_of(*record))
         if (
             pipeline.state.shown_incident is not None
@@ -165,7 +165,7 @@ def test_incident_is_erased_with_all_its_members(story: Story) -> None:
             ]
     assert worn == []
     assert pipeline.state.units["FF-02"].wearer.person is not None  # as it was afterwards
-    with Store(story.folder / "station.sqlite") as store:
+    with Store(scenario.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
         incident = records.incident("i1")
         assert incident is not None
@@ -178,88 +178,90 @@ def test_incident_is_erased_with_all_its_members(story: Story) -> None:
     assert set(texts) == {ERASED_TEXT}
 
 
-def test_late_messages_of_an_erased_incident_are_erased(story: Story) -> None:
+def test_late_messages_of_an_erased_incident_are_erased(scenario: ErasureScenario) -> None:
     """Out of its journal, with the next link."""
-    forget(story, "i1")
-    headers = [one.message.header for one in story.events()]
+    forget(scenario, "i1")
+    headers = [one.message.header for one in scenario.events()]
     for unit_id in ("FF-01", "FF-02"):
         last = max((one for one in headers if one.unit_id == unit_id), key=lambda one: one.seq)
         late = encode(message_factory.status(msgspec.structs.replace(last, seq=10_000)))
-        with LiveStation(story.folder) as station:
+        with LiveStation(scenario.folder) as station:
             received = station.pipeline.state.units[unit_id]
             station.feed.offer(backfilled_key(unit_id, STATUS.suffix), late)
             until(partial(received.has, last.boot_id, 10_000))
-        assert late in story.stored()
-        forget(story, "i1")
-        assert late not in story.stored()
+        assert late in scenario.stored()
+        forget(scenario, "i1")
+        assert late not in scenario.stored()
 
 
-def test_erasure_of_an_open_incident_or_unknown_person_is_refused(story: Story) -> None:
+def test_erasure_of_an_open_incident_or_unknown_person_is_refused(
+    scenario: ErasureScenario,
+) -> None:
     for stranger in ("p-nobody", "A. Kovač"):
         with pytest.raises(UserError, match="knows a person"):
-            forget(story, stranger)
-    assert not (story.folder / "forgetting.json").exists(), "it has no names in it"
-    with LiveStation(story.folder) as station:
+            forget(scenario, stranger)
+    assert not (scenario.folder / "forgetting.json").exists(), "it has no names in it"
+    with LiveStation(scenario.folder) as station:
         station.act(OpenIncident("i2", "Another"))
-    station_app.rebuild(story.folder, lambda _: None)
+    station_app.rebuild(scenario.folder, lambda _: None)
     for what in ("i2", "p-77"):  # whose name would be gone from what goes on
         with pytest.raises(UserError, match="incident Another is open; close it first"):
-            forget(story, what)
+            forget(scenario, what)
 
 
-def test_wearer_is_unassigned_before_the_erasure(story: Story) -> None:
+def test_wearer_is_unassigned_before_the_erasure(scenario: ErasureScenario) -> None:
     """Else what the unit goes on saying would be forgotten never.  It is asked about before."""
-    with LiveStation(story.folder) as station:
+    with LiveStation(scenario.folder) as station:
         station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
-    station_app.rebuild(story.folder, lambda _: None)
+    station_app.rebuild(scenario.folder, lambda _: None)
     asked: list[str] = []
-    station_app.forget(story.folder, ANA, asked.append, lambda _: None)
+    station_app.forget(scenario.folder, ANA, asked.append, lambda _: None)
     assert asked == [f"person {ANA}, who wears FF-01 and is unassigned first"]
-    assert names_in(story.stored(), ANA) == []
-    last = [one.message for one in story.events() if isinstance(one.message, OperatorAction)][-1]
+    assert names_in(scenario.stored(), ANA) == []
+    last = [one.message for one in scenario.events() if isinstance(one.message, OperatorAction)][-1]
     assert (last.by, last.action) == ("muster base forget", Unassign("FF-01"))
-    with Store(story.folder / "station.sqlite") as store:
+    with Store(scenario.folder / "station.sqlite") as store:
         assert list(Roster(store, SystemClock()).worn_by("p-77")) == []
         actions = [one.action for one in Records(store, SystemClock()).audit_entries(EVER)]
     assert "Unassign" in actions
-    with LiveStation(story.folder) as station:
+    with LiveStation(scenario.folder) as station:
         assert station.pipeline.state.units["FF-01"].wearer.person is None
 
 
-def test_refused_confirmation_keeps_the_assignment(story: Story) -> None:
-    with LiveStation(story.folder) as station:
+def test_refused_confirmation_keeps_the_assignment(scenario: ErasureScenario) -> None:
+    with LiveStation(scenario.folder) as station:
         station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
-    station_app.rebuild(story.folder, lambda _: None)
+    station_app.rebuild(scenario.folder, lambda _: None)
 
     def refuse(_about: str) -> None:
         raise UserError("no")
 
     with pytest.raises(UserError, match="no"):
-        station_app.forget(story.folder, ANA, refuse, lambda _: None)
-    with Store(story.folder / "station.sqlite") as store:
+        station_app.forget(scenario.folder, ANA, refuse, lambda _: None)
+    with Store(scenario.folder / "station.sqlite") as store:
         assert list(Roster(store, SystemClock()).worn_by("p-77")) == ["FF-01"]
 
 
-def test_removed_person_is_erased_by_name(story: Story) -> None:
-    with Store(story.folder / "station.sqlite") as store:
+def test_removed_person_is_erased_by_name(scenario: ErasureScenario) -> None:
+    with Store(scenario.folder / "station.sqlite") as store:
         assert Roster(store, SystemClock()).remove_person("p-77")
-    forget(story, ANA)
-    assert names_in(story.stored(), ANA) == []
+    forget(scenario, ANA)
+    assert names_in(scenario.stored(), ANA) == []
 
 
-def test_ambiguous_name_is_refused(story: Story) -> None:
-    with Store(story.folder / "station.sqlite") as store:
+def test_ambiguous_name_is_refused(scenario: ErasureScenario) -> None:
+    with Store(scenario.folder / "station.sqlite") as store:
         roster, records = Roster(store, SystemClock()), Records(store, SystemClock())
         other = roster.add_person(ANA, "", "")
         records.audit("chief", "AddedPerson", f"{other.person_id} {ANA}")
         assert roster.remove_person(other.person_id)
     with pytest.raises(UserError, match=rf"2 people are or were called .*{other.person_id}"):
-        forget(story, ANA)
+        forget(scenario, ANA)
 
 
 @pytest.mark.parametrize("what", ["p-77", "i1"])
 def test_station_completes_an_unfinished_erasure_of_a_command(
-    story: Story, monkeypatch: pytest.MonkeyPatch, what: str
+    scenario: ErasureScenario, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     def cut_short(*_: object) -> None:
         raise KeyboardInterrupt
@@ -267,15 +269,15 @@ def test_station_completes_an_unfinished_erasure_of_a_command(
     with monkeypatch.context() as patched:
         patched.setattr("base_station.privacy.erasure_service.forget_in", cut_short)
         with pytest.raises(UserError, match="the same command, or the station when it is started"):
-            forget(story, what)
-    (job,) = JobList(story.folder / "forgetting.json", ErasureJob).under_way()
+            forget(scenario, what)
+    (job,) = JobList(scenario.folder / "forgetting.json", ErasureJob).under_way()
     assert (job.by, job.subject_id, job.began) == ("muster base forget", what, True)
-    forget(story, what)
-    stored = story.stored()
-    assert [payload for payload in story.ana_stated if payload in stored] == []
-    (job,) = JobList(story.folder / "forgetting.json", ErasureJob).all()
+    forget(scenario, what)
+    stored = scenario.stored()
+    assert [payload for payload in scenario.ana_stated if payload in stored] == []
+    (job,) = JobList(scenario.folder / "forgetting.json", ErasureJob).all()
     assert job.state is ErasureState.DONE
-    with Store(story.folder / "station.sqlite") as store:
+    with Store(scenario.folder / "station.sqlite") as store:
         audit = Records(store, SystemClock()).audit_entries(EVER)
     (entry,) = [one for one in audit if one.action.startswith("Forgot")]
     assert entry.detail.endswith(f"{job.records} records of the log in {job.files} files")
@@ -284,11 +286,11 @@ def test_station_completes_an_unfinished_erasure_of_a_command(
 
 def test_names_are_found_in_every_kind_of_record(tmp_path: Path) -> None:
     """Every kind of record that can hold a text is in the story."""
-    story = Story(tmp_path / "station", older=True)
-    kinds = {key for _, key, payload in story.before if ANA.encode() in payload}
+    scenario = ErasureScenario(tmp_path / "station", older=True)
+    kinds = {key for _, key, payload in scenario.before if ANA.encode() in payload}
     assert any("operator" in key for key in kinds)
     assert any("alarm" in key for key in kinds)
-    with SegmentReader(segment_paths(story.folder / "log")[0]) as reader:
+    with SegmentReader(segment_paths(scenario.folder / "log")[0]) as reader:
         derived = [key for _, key, payload in reader.records(derived=True) if is_derived(key)]
     assert derived
     assert encode(Heartbeat(Header("FF-01", 1, 1, 1), 0, 0))

@@ -22,7 +22,7 @@ from tests.rig.waiting import until
 UNIT = "anna"
 
 
-class Running:
+class RecordingScene:
     """A station and an agent that records."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
@@ -57,12 +57,12 @@ class Running:
 
 
 @pytest.fixture(scope="module")
-def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RecordingScene]:
     with ExitStack() as stack:
-        yield Running(tmp_path_factory.mktemp("fetch"), stack)
+        yield RecordingScene(tmp_path_factory.mktemp("fetch"), stack)
 
 
-def test_command_pulls_the_recording_of_a_unit(running: Running) -> None:
+def test_command_pulls_the_recording_of_a_unit(running: RecordingScene) -> None:
     code, reported = running.fetch(UNIT, "--from", "2020-01-01T00:00+00:00")
     assert code == 0, reported
     (boot,) = running.pulled()
@@ -71,7 +71,7 @@ def test_command_pulls_the_recording_of_a_unit(running: Running) -> None:
     assert sum(1 for _ in BlackBoxSource(boot).batches()) > 10
 
 
-def test_transfer_by_the_api_shows_its_progress(running: Running) -> None:
+def test_transfer_by_the_api_shows_its_progress(running: RecordingScene) -> None:
     form = {"unit_id": UNIT, "from_ms": running.began_ms}
     asked = running.browser.call("POST", "/recordings", json=form)
 
@@ -100,14 +100,14 @@ def test_transfer_by_the_api_shows_its_progress(running: Running) -> None:
     ],
 )
 def test_invalid_request_is_refused_with_a_reason(
-    running: Running, arguments: list[str], reported: str
+    running: RecordingScene, arguments: list[str], reported: str
 ) -> None:
     result = CliRunner().invoke(app, ["fetch-recording", *arguments, *running.where])
     assert isinstance(result.exception, UserError)
     assert reported in str(result.exception)
 
 
-def test_a_refusal_is_one_sentence_and_no_success(running: Running) -> None:
+def test_a_refusal_is_one_sentence_and_no_success(running: RecordingScene) -> None:
     code, text = running.fetch("bert", "--from", "2020-01-01")
     assert code == 2
     assert len(text.strip().splitlines()) == 1

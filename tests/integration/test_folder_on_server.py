@@ -45,7 +45,7 @@ from shared.clock import SystemClock
 from shared.config import load_config
 from shared.errors import ConfigError, StoreError
 from tests.rig.database_server import DatabaseServer, database_server
-from tests.rig.erasure_scenario import Story
+from tests.rig.erasure_scenario import ErasureScenario
 from tests.rig.quick_hash import QUICK_HASH
 
 LOGGED = [table for table in PROJECTIONS if table is not LogSegment]
@@ -60,7 +60,7 @@ def server() -> Iterator[DatabaseServer]:
 @pytest.fixture(scope="module")
 def stated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A station's folder with people in it, whose tables are in a file."""
-    folder = Story(tmp_path_factory.mktemp("told") / "station", older=False).folder
+    folder = ErasureScenario(tmp_path_factory.mktemp("told") / "station", older=False).folder
     with Store(folder / "station.sqlite") as store:
         accounts = Accounts(store, SystemClock(), QUICK_HASH)
         accounts.add_user("ada", "a long password", Role.ADMINISTRATOR)

@@ -17,14 +17,14 @@ from edge.sources.gnss.reader import GnssReader
 from edge.sources.gnss.registry import open_receiver
 from shared.clock import NS_PER_S, SystemClock
 from shared.messages import FixType
-from tests.rig.gps_receiver import Reported, burst
+from tests.rig.gps_receiver import ReportedFix, burst
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import PtyDevice, paced
 
 LONG_S = 120  # longer than any of this takes
 STD_M = 2.0
-HERE = Reported(std_m=STD_M, vertical_std_m=3.0)
+HERE = ReportedFix(std_m=STD_M, vertical_std_m=3.0)
 
 
 class Gpsd:

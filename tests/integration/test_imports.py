@@ -35,8 +35,8 @@ from shared.geo import Anchor
 from shared.mcap_log import SegmentWriter, read_log
 from shared.messages import STATION_ID
 from shared.messages.station import Assign, CloseIncident, RemoveImport, SetAnchor
-from tests.rig.desk_station import DeskStation
 from tests.rig.imported_files import exif_time, line, logged, write_gpx, write_photo
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.round_walk import Walk
 from tests.rig.waiting import until
 
@@ -102,13 +102,13 @@ def files_in(data: Path) -> set[str]:
 
 
 @pytest_asyncio.fixture
-async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
+async def commander(station: InProcessStation) -> AsyncIterator[httpx.AsyncClient]:
     async with station.client(Role.COMMANDER) as client:
         yield client
 
 
 async def test_file_is_imported_once_shown_on_the_plan_and_removed(
-    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
+    station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock, tmp_path: Path
 ) -> None:
     now_s = clock.utc_ns() // NS_PER_S
     incident_id = (await commander.post("/incidents", json={"name": "Mill"})).json()["incident_id"]
@@ -163,7 +163,7 @@ async def test_file_is_imported_once_shown_on_the_plan_and_removed(
 
 
 async def test_refused_file_leaves_nothing(
-    station: DeskStation,
+    station: InProcessStation,
     commander: httpx.AsyncClient,
     clock: ManualClock,
     tmp_path: Path,

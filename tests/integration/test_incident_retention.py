@@ -17,7 +17,7 @@ from base_station.storage.db.window import EVER
 from shared.clock import SystemClock
 from shared.mcap_log import read_log
 from tests.golden.test_older_data_folder import ARCHIVE
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.station_command import Command
 from tests.rig.waiting import until
 
@@ -46,7 +46,7 @@ def test_station_erases_incident_over_its_retention(
 
 
 async def test_closed_incident_has_the_time_of_its_erasure(
-    station: DeskStation, browser: httpx.AsyncClient
+    station: InProcessStation, browser: httpx.AsyncClient
 ) -> None:
     station.app.state.services = dataclasses.replace(
         station.services, retention=RetentionConfig(30.0)

@@ -22,14 +22,14 @@ from base_station.api.routes import live
 from base_station.api.server import ConsoleServer, bind
 from shared.errors import StoreError
 from shared.messages.station import OpenIncident, RegisterUnit
-from tests.rig.desk_station import PASSWORD, DeskStation
+from tests.rig.in_process_station import PASSWORD, InProcessStation
 from tests.rig.live_page import LIVE_SCHEMA
 
 SCHEMA = jsonschema_rs.validator_for(LIVE_SCHEMA.read_text())
 
 
 @pytest_asyncio.fixture
-async def address(station: DeskStation) -> AsyncIterator[str]:
+async def address(station: InProcessStation) -> AsyncIterator[str]:
     """HOST:PORT of the running server."""
     listening = bind("127.0.0.1", 0)
     port = listening.getsockname()[1]
@@ -41,7 +41,7 @@ async def address(station: DeskStation) -> AsyncIterator[str]:
     await asyncio.wait_for(task, 10.0)
 
 
-def token_of(station: DeskStation, role: Role = Role.VIEWER) -> dict[str, str]:
+def token_of(station: InProcessStation, role: Role = Role.VIEWER) -> dict[str, str]:
     _, secret = station.services.accounts.add_token(role.word, "test", role, None)
     return {"Authorization": f"Bearer {secret}"}
 
@@ -64,16 +64,16 @@ async def _drain(console: ClientConnection) -> None:
         await console.recv()
 
 
-async def act(station: DeskStation, name: str) -> None:
+async def act(station: InProcessStation, name: str) -> None:
     await asyncio.to_thread(station.services.gate.submit, "mia", OpenIncident(name, name))
 
 
-async def act_unit(station: DeskStation, unit_id: str) -> None:
+async def act_unit(station: InProcessStation, unit_id: str) -> None:
     await asyncio.to_thread(station.services.gate.submit, "mia", RegisterUnit(unit_id, unit_id))
 
 
 async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
-    station: DeskStation, address: str
+    station: InProcessStation, address: str
 ) -> None:
     headers = token_of(station)
     async with connect(f"ws://{address}/api/v1/live", additional_headers=headers) as console:
@@ -88,7 +88,9 @@ async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
         assert again["incident"]["name"] == "kitchen"
 
 
-async def test_confirming_console_gets_merged_deltas(station: DeskStation, address: str) -> None:
+async def test_confirming_console_gets_merged_deltas(
+    station: InProcessStation, address: str
+) -> None:
     url, headers = f"ws://{address}/api/v1/live?deltas=fields", token_of(station)
     async with connect(url, additional_headers=headers) as slow:
         first = await received(slow)
@@ -115,7 +117,7 @@ async def test_confirming_console_gets_merged_deltas(station: DeskStation, addre
 
 
 async def test_messages_are_compressed_for_consoles_that_offer_it(
-    station: DeskStation, address: str
+    station: InProcessStation, address: str
 ) -> None:
     url, headers = f"ws://{address}/api/v1/live", token_of(station)
     async with (
@@ -130,7 +132,9 @@ async def test_messages_are_compressed_for_consoles_that_offer_it(
         assert await received(offering) == await received(plain)
 
 
-async def test_browser_is_authenticated_by_its_cookie(station: DeskStation, address: str) -> None:
+async def test_browser_is_authenticated_by_its_cookie(
+    station: InProcessStation, address: str
+) -> None:
     async with httpx.AsyncClient(base_url=f"http://{address}") as browser:
         browser.headers["origin"] = f"http://{address}"
         credentials = {"username": "viewer", "password": PASSWORD}
@@ -151,7 +155,7 @@ async def test_connection_without_login_is_closed_with_its_code(address: str) ->
 
 
 async def test_connection_before_the_password_change_is_closed(
-    station: DeskStation, address: str
+    station: InProcessStation, address: str
 ) -> None:
     accounts = station.services.accounts
     accounts.add_user("first", PASSWORD, Role.ADMINISTRATOR, generated=True)
@@ -168,7 +172,7 @@ async def test_connection_before_the_password_change_is_closed(
 
 @pytest.mark.parametrize("path", ["live", "replays/none/live"])
 async def test_token_of_another_scope_is_refused(
-    station: DeskStation, address: str, path: str
+    station: InProcessStation, address: str, path: str
 ) -> None:
     accounts, url = station.services.accounts, f"ws://{address}/api/v1/{path}"
     others = {scope.value for scope in Scope} - {"live"}
@@ -182,7 +186,9 @@ async def test_token_of_another_scope_is_refused(
                 assert await close_code(console) == code
 
 
-async def test_large_message_of_a_console_is_refused(station: DeskStation, address: str) -> None:
+async def test_large_message_of_a_console_is_refused(
+    station: InProcessStation, address: str
+) -> None:
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
         await received(console)
@@ -190,7 +196,9 @@ async def test_large_message_of_a_console_is_refused(station: DeskStation, addre
         assert await close_code(console) == 1009
 
 
-async def test_unknown_replay_is_refused_with_its_code(station: DeskStation, address: str) -> None:
+async def test_unknown_replay_is_refused_with_its_code(
+    station: InProcessStation, address: str
+) -> None:
     url = f"ws://{address}/api/v1/replays/none/live"
     async with connect(url, additional_headers=token_of(station)) as console:
         assert await close_code(console) == live.NOT_FOUND
@@ -200,7 +208,7 @@ async def test_unknown_replay_is_refused_with_its_code(station: DeskStation, add
     "message", ["hello", '{"type": "delta"}', '{"type": "shown"}', "[]", "{", b"\x00\x01"]
 )
 async def test_invalid_request_ends_the_connection(
-    station: DeskStation, address: str, message: str | bytes
+    station: InProcessStation, address: str, message: str | bytes
 ) -> None:
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
@@ -210,7 +218,7 @@ async def test_invalid_request_ends_the_connection(
 
 
 async def test_the_end_of_a_session_ends_its_socket(
-    station: DeskStation, address: str, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(live, "CHECK_LOGIN_S", 0.1)
     headers = token_of(station)
@@ -223,7 +231,7 @@ async def test_the_end_of_a_session_ends_its_socket(
 
 
 async def test_disk_failure_keeps_open_connections_and_refuses_new_ones(
-    station: DeskStation,
+    station: InProcessStation,
     address: str,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
@@ -252,7 +260,7 @@ async def test_disk_failure_keeps_open_connections_and_refuses_new_ones(
 
 
 async def test_console_that_stops_reading_is_disconnected(
-    station: DeskStation, address: str, monkeypatch: pytest.MonkeyPatch
+    station: InProcessStation, address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(live, "SEND_TIMEOUT_S", 0.5)
     headers = token_of(station)
@@ -287,7 +295,7 @@ async def test_console_that_stops_reading_is_disconnected(
             station.hub.reset(station.drive.picture(), {})
 
 
-async def test_the_server_stops_with_consoles_connected(station: DeskStation) -> None:
+async def test_the_server_stops_with_consoles_connected(station: InProcessStation) -> None:
     listening = bind("127.0.0.1", 0)
     port = listening.getsockname()[1]
     server = ConsoleServer(station.app, listening)

@@ -40,7 +40,7 @@ def records(luck: int = 1) -> list[LogRecord]:
     return made
 
 
-class HaController:
+class PairedLogs:
     """The logs of two stations, written alike."""
 
     def __init__(self, folder: Path, closing_all: ExitStack) -> None:
@@ -83,15 +83,15 @@ class HaController:
 
 
 @pytest.fixture
-def pair(tmp_path: Path) -> Iterator[HaController]:
+def pair(tmp_path: Path) -> Iterator[PairedLogs]:
     with ExitStack() as stack:
-        yield HaController(tmp_path, stack)
+        yield PairedLogs(tmp_path, stack)
 
 
 @pytest.mark.parametrize("at", [0.0, 0.3, 0.6, 0.99])
 @pytest.mark.parametrize("number", [0, 2])
 def test_damaged_segment_is_repaired_from_the_other_station(
-    pair: HaController, number: int, at: float
+    pair: PairedLogs, number: int, at: float
 ) -> None:
     written = records()
     pair.write(written, written)
@@ -108,7 +108,7 @@ def test_damaged_segment_is_repaired_from_the_other_station(
     assert pair.check.problems() == ()
 
 
-def test_unopenable_segment_is_replaced_from_the_other_station(pair: HaController) -> None:
+def test_unopenable_segment_is_replaced_from_the_other_station(pair: PairedLogs) -> None:
     written = records()
     pair.write(written, written)
     path = pair.mine.segments()[1].path
@@ -120,7 +120,7 @@ def test_unopenable_segment_is_replaced_from_the_other_station(pair: HaControlle
     assert pair.check.problems() == ()
 
 
-def test_log_is_not_repaired_from_another_log(pair: HaController) -> None:
+def test_log_is_not_repaired_from_another_log(pair: PairedLogs) -> None:
     pair.write(records(), records(luck=2))
     pair.damage(1, 0.3)
     pair.look_at_all()
@@ -131,7 +131,7 @@ def test_log_is_not_repaired_from_another_log(pair: HaController) -> None:
     assert len(pair.check.problems()) == 1
 
 
-def test_unrepairable_segment_does_not_prevent_other_repairs(pair: HaController) -> None:
+def test_unrepairable_segment_does_not_prevent_other_repairs(pair: PairedLogs) -> None:
     written = records()
     others = [(t_ns, key, b"another") if t_ns < T0 + 10**9 else (t_ns, key, payload)
               for t_ns, key, payload in written]  # fmt: skip
@@ -148,7 +148,7 @@ def test_unrepairable_segment_does_not_prevent_other_repairs(pair: HaController)
     assert pair.check.damaged == (pair.mine.segments()[0].path,)
 
 
-def test_consecutive_repaired_segments_contain_every_event_once(pair: HaController) -> None:
+def test_consecutive_repaired_segments_contain_every_event_once(pair: PairedLogs) -> None:
     written = records()
     pair.write(written, written)
     for number in (1, 2):
@@ -161,7 +161,7 @@ def test_consecutive_repaired_segments_contain_every_event_once(pair: HaControll
     assert pair.check.problems() == ()
 
 
-def test_repair_waits_for_the_other_station(pair: HaController) -> None:
+def test_repair_waits_for_the_other_station(pair: PairedLogs) -> None:
     pair.write(records(), records())
     pair.damage(1, 0.3)
     pair.look_at_all()

@@ -44,7 +44,7 @@ from tests.rig.small_log import KEY, T0_NS
 from tests.rig.waiting import until
 
 
-class Desk:
+class IncidentFolder:
     """A station's folder after an incident, and what looks back on it."""
 
     def __init__(self, path: Path) -> None:
@@ -92,7 +92,7 @@ def processes() -> Iterator[ReplayProcesses]:
 
 
 @pytest.fixture
-def desk(tmp_path: Path, make_position) -> Iterator[Desk]:
+def desk(tmp_path: Path, make_position) -> Iterator[IncidentFolder]:
     position: Position = make_position()
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit("FF-01", ""))
@@ -108,13 +108,13 @@ def desk(tmp_path: Path, make_position) -> Iterator[Desk]:
         station.act(SetPin("p", "FF-01", 0, 0.5, 0.5, 0.5, None, None, 0.0, "door"))
         station.act(CloseIncident("i1"))
     station_app.rebuild(tmp_path, lambda _: None)
-    desk = Desk(tmp_path)
+    desk = IncidentFolder(tmp_path)
     yield desk
     desk.store.close()
 
 
 def test_process_computes_the_same_result_and_stores_it(
-    desk: Desk, processes: ReplayProcesses
+    desk: IncidentFolder, processes: ReplayProcesses
 ) -> None:
     post_processor = desk.beside(processes)
     report = post_processor.assess(desk.incident, {})
@@ -128,7 +128,9 @@ def test_process_computes_the_same_result_and_stores_it(
     assert report == msgspec.structs.replace(again.report, made_ms=report.made_ms)
 
 
-def test_missing_segments_are_in_the_report(desk: Desk, processes: ReplayProcesses) -> None:
+def test_missing_segments_are_in_the_report(
+    desk: IncidentFolder, processes: ReplayProcesses
+) -> None:
     """A segment that only the database knows, and one of another log."""
     known = KnownSegment("000007-20231114T221320Z.mcap", T0_NS, T0_NS + NS_PER_S, 10)
     with closing(SegmentWriter(desk.folder.path / "other")) as other:
@@ -146,7 +148,9 @@ def test_missing_segments_are_in_the_report(desk: Desk, processes: ReplayProcess
     assert again.flaws == report.flaws
 
 
-def test_result_of_an_open_incident_is_not_stored(desk: Desk, processes: ReplayProcesses) -> None:
+def test_result_of_an_open_incident_is_not_stored(
+    desk: IncidentFolder, processes: ReplayProcesses
+) -> None:
     is_open = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=desk.incident.opened_ns, closed_ns=None
     )
@@ -160,7 +164,7 @@ def test_result_of_an_open_incident_is_not_stored(desk: Desk, processes: ReplayP
 
 
 def test_excess_of_the_memory_limit_is_refused_and_not_retried(
-    desk: Desk, processes: ReplayProcesses, caplog: pytest.LogCaptureFixture
+    desk: IncidentFolder, processes: ReplayProcesses, caplog: pytest.LogCaptureFixture
 ) -> None:
     post_processor = desk.beside(processes, memory_mb=10)
     with pytest.raises(MemoryLimitError, match=r"i1 takes more memory than the 10 MB.*base smooth"):
@@ -178,7 +182,7 @@ def test_excess_of_the_memory_limit_is_refused_and_not_retried(
     assert desk.beside(processes).smoothed(desk.incident).is_kept
 
 
-class KilledAtWork(ReplayProcesses):
+class KilledProcesses(ReplayProcesses):
     """Once: all of them, by somebody who needs memory."""
 
     is_killed = False
@@ -194,8 +198,8 @@ class KilledAtWork(ReplayProcesses):
         return line
 
 
-def test_killed_process_is_reported_and_a_new_request_succeeds(desk: Desk) -> None:
-    with KilledAtWork() as processes:
+def test_killed_process_is_reported_and_a_new_request_succeeds(desk: IncidentFolder) -> None:
+    with KilledProcesses() as processes:
         post_processor = desk.beside(processes)
         with pytest.raises(StoreError, match="the process that did so has ended; ask again"):
             post_processor.smoothed(desk.incident)
@@ -203,7 +207,7 @@ def test_killed_process_is_reported_and_a_new_request_succeeds(desk: Desk) -> No
         assert post_processor.smoothed(desk.incident).is_kept
 
 
-class AtWork(ReplayProcesses):
+class SlowProcesses(ReplayProcesses):
     """One that takes its time."""
 
     def __init__(self) -> None:
@@ -219,8 +223,8 @@ class AtWork(ReplayProcesses):
         return FrameChannel(ours)
 
 
-def test_stopping_station_does_not_wait_for_post_processing(desk: Desk) -> None:
-    processes, reported = AtWork(), list[str]()
+def test_stopping_station_does_not_wait_for_post_processing(desk: IncidentFolder) -> None:
+    processes, reported = SlowProcesses(), list[str]()
     post_processor, incident = desk.beside(processes), desk.incident
 
     def ask() -> None:

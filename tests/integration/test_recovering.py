@@ -42,7 +42,7 @@ from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
 from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
 from tests.rig import message_factory as stated_by_bench
-from tests.rig.desk_station import PASSWORD
+from tests.rig.in_process_station import PASSWORD
 from tests.rig.waiting import PATIENCE_S
 
 SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)
@@ -120,7 +120,7 @@ def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> N
     disk.projection.flush()
 
 
-class Nobody:
+class NoConsoles:
     """No console is open."""
 
     def reset(self, *_: object) -> None:
@@ -145,7 +145,7 @@ def test_unit_received_long_ago_in_the_incident_is_shown_at_its_position(
         for waited_s in (1800.0, 3 * 3600.0):
             clock.advance(waited_s)
             pictures.append(
-                StoredSnapshotSource(disk.roster, disk.records, clock, Nobody()).snapshot()
+                StoredSnapshotSource(disk.roster, disk.records, clock, NoConsoles()).snapshot()
             )
     for picture, trails in pictures:
         (shown,) = picture.units
@@ -163,7 +163,7 @@ def test_uncertainty_grows_while_units_are_not_received(tmp_path: Path, clock: M
         assert isinstance(disk.store, Store)
         disk.store.hangs = lambda: False
         store_what_happened(disk)
-        known = StoredSnapshotSource(disk.roster, disk.records, clock, Nobody())
+        known = StoredSnapshotSource(disk.roster, disk.records, clock, NoConsoles())
         radii_m = []
         for waited_s in (1.0, 30.0, 60.0):
             clock.advance(waited_s)

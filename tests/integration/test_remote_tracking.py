@@ -72,7 +72,7 @@ def pipeline(
     )
 
 
-class Air:
+class RadioBus:
     """The bus between the unit and its tracking agent."""
 
     def __init__(self) -> None:
@@ -114,8 +114,8 @@ def contents(found: Iterable[Position]) -> list[tuple[object, ...]]:
 
 
 @pytest.fixture
-def air() -> Air:
-    return Air()
+def radio() -> RadioBus:
+    return RadioBus()
 
 
 @pytest.fixture
@@ -155,137 +155,139 @@ def test_unit_sends_raw_batches_at_the_channels_rate_and_no_positions() -> None:
 
 
 @pytest.mark.parametrize("one_by_one", [False, True])
-def test_positions_equal_those_of_tracking_on_the_unit(air: Air, one_by_one: bool) -> None:
-    air.send(weak_unit(one_by_one))
-    air.send(end_of_run())
+def test_positions_equal_those_of_tracking_on_the_unit(radio: RadioBus, one_by_one: bool) -> None:
+    radio.send(weak_unit(one_by_one))
+    radio.send(end_of_run())
     itself = positions(strong_unit())
     assert len(itself) > 50
-    assert contents(air.track()) == contents(itself)
+    assert contents(radio.track()) == contents(itself)
 
 
-def test_gap_in_the_raw_stream_is_flagged(air: Air) -> None:
+def test_gap_in_the_raw_stream_is_flagged(radio: RadioBus) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
-    air.send(message for message in stated if not any(message is one for one in lost))
-    air.send(end_of_run())
-    found = air.track()
+    radio.send(message for message in stated if not any(message is one for one in lost))
+    radio.send(end_of_run())
+    found = radio.track()
     doubted = [p for p in found if Reason.SAMPLE_GAP in p.reasons]
     assert doubted
     assert all(p.header.t_mono_ns >= lost[0].header.t_mono_ns - NS_PER_S for p in doubted)
 
 
 @pytest.mark.parametrize("lost", [slice(50, 51), slice(100, 400)])
-def test_lost_samples_are_fetched_from_the_journal(air: Air, journal: Journal, lost: slice) -> None:
+def test_lost_samples_are_fetched_from_the_journal(
+    radio: RadioBus, journal: Journal, lost: slice
+) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
-    air.keep(journal, stated)
+    radio.keep(journal, stated)
     missed = {id(message) for message in raw[lost]}
-    air.send(message for message in stated if id(message) not in missed)
-    air.send(end_of_run())
+    radio.send(message for message in stated if id(message) not in missed)
+    radio.send(end_of_run())
     itself = positions(strong_unit())
-    assert contents(air.track()) == contents(itself)
-    assert air.source.fetched == len(missed)
+    assert contents(radio.track()) == contents(itself)
+    assert radio.source.fetched == len(missed)
 
 
-def test_late_batch_that_was_already_fetched_is_dropped(air: Air, journal: Journal) -> None:
+def test_late_batch_that_was_already_fetched_is_dropped(radio: RadioBus, journal: Journal) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
-    air.keep(journal, stated)
+    radio.keep(journal, stated)
     late = raw[100:110]
     for message in stated:
         if not any(message is one for one in late):
-            air.send((message,))
+            radio.send((message,))
         if message is raw[130]:
-            air.send(late)
-    air.send(end_of_run())
+            radio.send(late)
+    radio.send(end_of_run())
     itself = positions(strong_unit())
-    assert contents(air.track()) == contents(itself)
-    assert (air.source.fetched, air.source.late) == (10, 10)
+    assert contents(radio.track()) == contents(itself)
+    assert (radio.source.fetched, radio.source.late) == (10, 10)
 
 
-def test_samples_missing_in_the_journal_stay_a_gap(air: Air, journal: Journal) -> None:
+def test_samples_missing_in_the_journal_stay_a_gap(radio: RadioBus, journal: Journal) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
     kept = [message for message in stated if not any(message is one for one in lost)]
-    air.keep(journal, kept)
-    air.send(kept)
-    air.send(end_of_run())
-    assert any(Reason.SAMPLE_GAP in p.reasons for p in air.track())
-    assert air.source.fetched == 0
+    radio.keep(journal, kept)
+    radio.send(kept)
+    radio.send(end_of_run())
+    assert any(Reason.SAMPLE_GAP in p.reasons for p in radio.track())
+    assert radio.source.fetched == 0
 
 
-def test_repeated_or_late_batch_is_dropped(air: Air) -> None:
+def test_repeated_or_late_batch_is_dropped(radio: RadioBus) -> None:
     stated = weak_unit()
     raw = [message for message in stated if isinstance(message, RawImu)]
     for message in stated:
-        air.send((message,))
+        radio.send((message,))
         if message is raw[50]:
-            air.send((raw[50], raw[20]))
-    air.send(end_of_run())
+            radio.send((raw[50], raw[20]))
+    radio.send(end_of_run())
     itself = positions(strong_unit())
-    assert contents(air.track()) == contents(itself)
+    assert contents(radio.track()) == contents(itself)
 
 
-def test_restarted_unit_starts_a_new_complete_path(air: Air) -> None:
+def test_restarted_unit_starts_a_new_complete_path(radio: RadioBus) -> None:
     second = weak_unit(boot_id=8)
-    air.send(weak_unit())
-    air.send(second[:40])
-    first = air.track()
-    air.send(second[40:])
-    air.send(weak_unit(boot_id=9)[:40])
-    assert contents(air.track()) == contents(first)
+    radio.send(weak_unit())
+    radio.send(second[:40])
+    first = radio.track()
+    radio.send(second[40:])
+    radio.send(weak_unit(boot_id=9)[:40])
+    assert contents(radio.track()) == contents(first)
 
 
-def test_late_message_of_the_previous_run_does_not_end_the_new_one(air: Air) -> None:
+def test_late_message_of_the_previous_run_does_not_end_the_new_one(radio: RadioBus) -> None:
     first, second = weak_unit(), weak_unit(boot_id=8)
     late = [message for message in first if isinstance(message, RawImu)][-1:]
-    air.send(first[:-40])
-    air.send(second[:40])
-    air.send(late)
-    air.send(second[40:])
-    air.send(weak_unit(boot_id=9)[:40])
-    air.track()
-    assert contents(air.track()) == contents(positions(strong_unit()))
+    radio.send(first[:-40])
+    radio.send(second[:40])
+    radio.send(late)
+    radio.send(second[40:])
+    radio.send(weak_unit(boot_id=9)[:40])
+    radio.track()
+    assert contents(radio.track()) == contents(positions(strong_unit()))
 
 
 def test_newest_of_two_devices_is_tracked_and_then_the_remaining_one(
-    air: Air,
+    radio: RadioBus,
 ) -> None:
     first, second = weak_unit(), weak_unit(boot_id=8)
-    air.send(first[:40])
+    radio.send(first[:40])
     for one, other in zip(first[40:], second, strict=False):
-        air.send((other, one))
-    air.send(second[len(first) - 40 :])
-    air.track()
-    left_out = air.listener.dropped
-    air.clock.advance(4.9)
-    air.send(first[-40:])
-    assert air.listener.dropped > left_out
-    left_out = air.listener.dropped
-    air.clock.advance(0.1)
-    air.send(first[-40:])
-    assert air.listener.dropped == left_out
-    assert contents(air.track()) == contents(positions(strong_unit()))
-    assert air.listener.has_restarted(8)
+        radio.send((other, one))
+    radio.send(second[len(first) - 40 :])
+    radio.track()
+    left_out = radio.listener.dropped
+    radio.clock.advance(4.9)
+    radio.send(first[-40:])
+    assert radio.listener.dropped > left_out
+    left_out = radio.listener.dropped
+    radio.clock.advance(0.1)
+    radio.send(first[-40:])
+    assert radio.listener.dropped == left_out
+    assert contents(radio.track()) == contents(positions(strong_unit()))
+    assert radio.listener.has_restarted(8)
 
 
-def test_raw_samples_wait_for_the_description(air: Air) -> None:
+def test_raw_samples_wait_for_the_description(radio: RadioBus) -> None:
     stated = weak_unit()
-    air.send(message for message in stated if isinstance(message, RawImu))
+    radio.send(message for message in stated if isinstance(message, RawImu))
     stop = Event()
     stop.set()
-    assert not BusSource(U).follow(air.listener, stop)
-    air.send(stated[:2])
-    air.send(end_of_run())
-    assert len(air.track()) > 50
+    assert not BusSource(U).follow(radio.listener, stop)
+    radio.send(stated[:2])
+    radio.send(end_of_run())
+    assert len(radio.track()) > 50
 
 
-def test_run_without_description_does_not_delay_the_next_one(air: Air) -> None:
+def test_run_without_description_does_not_delay_the_next_one(radio: RadioBus) -> None:
     undescribed = [message for message in weak_unit() if isinstance(message, RawImu)]
-    air.send(undescribed[:60])
-    air.send(weak_unit(boot_id=8))
-    air.send(weak_unit(boot_id=9)[:40])
-    assert contents(air.track()) == contents(positions(strong_unit()))
-    assert air.listener.dropped == 60
+    radio.send(undescribed[:60])
+    radio.send(weak_unit(boot_id=8))
+    radio.send(weak_unit(boot_id=9)[:40])
+    assert contents(radio.track()) == contents(positions(strong_unit()))
+    assert radio.listener.dropped == 60

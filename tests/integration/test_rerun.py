@@ -21,7 +21,7 @@ SCENARIOS = {"FF-01": "search-ground-floor?seed=1", "FF-02": "search-ground-floo
 DURATION_S = 60.0
 
 
-class Given:
+class RerunFolders:
     def __init__(self, folder: Path) -> None:
         self.station = write_incident(folder, SCENARIOS, DURATION_S)
         self.units = folder / "units"
@@ -41,13 +41,13 @@ def rerun(data: Path, *options: str) -> Result:
 
 
 @pytest.fixture(scope="module")
-def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
+def given(tmp_path_factory: pytest.TempPathFactory) -> RerunFolders:
     compile_trackers()
-    return Given(tmp_path_factory.mktemp("given"))
+    return RerunFolders(tmp_path_factory.mktemp("given"))
 
 
 @pytest.fixture(scope="module")
-def same(given: Given, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RerunReport]:
+def same(given: RerunFolders, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RerunReport]:
     out = tmp_path_factory.mktemp("same") / "out"
     return out, given.rerun(out)
 
@@ -67,7 +67,7 @@ def test_the_same_settings_give_the_same_trails_and_alarms(
     assert report.notes == ()
 
 
-def test_other_tracker_gives_another_trail(given: Given, tmp_path: Path) -> None:
+def test_other_tracker_gives_another_trail(given: RerunFolders, tmp_path: Path) -> None:
     report = given.rerun(tmp_path / "out", "--tracker", "huang")
     first = report.trails[0]
     assert (report.tracker, first.tracker) == ("huang", "huang")
@@ -80,7 +80,7 @@ def test_other_tracker_gives_another_trail(given: Given, tmp_path: Path) -> None
 
 
 def test_interrupted_rerun_continues_from_finished_parts(
-    given: Given, same: tuple[Path, RerunReport]
+    given: RerunFolders, same: tuple[Path, RerunReport]
 ) -> None:
     out, report = same
     logs = {path: path.stat().st_mtime_ns for path in (out / "retracked").rglob("*.mcap")}
@@ -91,7 +91,7 @@ def test_interrupted_rerun_continues_from_finished_parts(
     assert sum(again[path] == logs[path] for path in logs) == len(logs) - 1
 
 
-def test_late_recording_continues_the_recorded_path(given: Given, tmp_path: Path) -> None:
+def test_late_recording_continues_the_recorded_path(given: RerunFolders, tmp_path: Path) -> None:
     """Pulled recordings often lack the start of the boot."""
     late = tmp_path / "FF-01" / "boot"
     shutil.copytree(given.boot("FF-01"), late)
@@ -110,14 +110,14 @@ def test_late_recording_continues_the_recorded_path(given: Given, tmp_path: Path
     assert any(note.startswith("FF-02 has no raw recording") for note in report.notes)
 
 
-def test_unknown_tracker_leaves_no_result(given: Given, tmp_path: Path) -> None:
+def test_unknown_tracker_leaves_no_result(given: RerunFolders, tmp_path: Path) -> None:
     recording = ("--recording", str(given.boot("FF-01")), "--out", str(tmp_path / "out"))
     with pytest.raises(UserError, match="no tracker 'eskv'"):
         raise rerun(given.station, *recording, "--tracker", "eskv").exception or AssertionError
     assert not list((tmp_path / "out").glob("report*"))
 
 
-def test_a_recording_of_another_incident_is_refused(given: Given, tmp_path: Path) -> None:
+def test_a_recording_of_another_incident_is_refused(given: RerunFolders, tmp_path: Path) -> None:
     other = write_incident(tmp_path / "other", {"FF-09": "straight?seed=3"}, 12.0)
     recording = ("--recording", str(tmp_path / "other" / "units"))
     with pytest.raises(UserError, match=r"FF-09.*does not belong"):

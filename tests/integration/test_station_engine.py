@@ -255,7 +255,7 @@ def test_action_after_the_shutdown_is_refused(tmp_path: Path) -> None:
         station.drive.submit("chief", RegisterUnit(U, "one")).result(1.0)
 
 
-class Killed(Exception):  # noqa: N818  # it is no error
+class KilledInRebuild(Exception):  # noqa: N818  # it is no error
     """While the log is being read."""
 
 
@@ -283,12 +283,12 @@ def test_start_after_a_kill_during_a_long_rebuild_continues_from_a_checkpoint(
     def until_killed() -> Iterator[tuple[int, str, bytes]]:
         yield from read
         until(last_is_saved, "the state of some minutes ago is saved")
-        raise Killed
+        raise KilledInRebuild
 
     first = LiveStation(tmp_path / "killed")
     for record in script.records:
         first.recorder.write(*record)
-    with pytest.raises(Killed):
+    with pytest.raises(KilledInRebuild):
         first.drive.rebuild(until_killed())
     first.close()
     second = LiveStation(tmp_path / "killed")
@@ -317,7 +317,7 @@ def test_rebuild_of_many_events_is_done_once(
         until(lambda: second.checkpoints.latest() is not None, "the state is saved")
 
 
-class Pressing:
+class MaydayFeed:
     """A ``Feed`` of two maydays.  Somebody deals with the first one while the other has come and
     waits to be taken.
     """
@@ -362,7 +362,7 @@ def test_mayday_received_during_the_handling_of_another_is_raised(
     tmp_path: Path, dealt_with: Callable[[str], Action]
 ) -> None:
     clock = ManualClock(utc_ns=1_700_000_000 * NS_PER_S)
-    feed, pipeline = Pressing(clock, dealt_with), make_pipeline()
+    feed, pipeline = MaydayFeed(clock, dealt_with), make_pipeline()
     recorder = Recorder(tmp_path, clock)
     feed.drive = StationEngine(pipeline, ports_of(feed, recorder, Screen(), tmp_path, clock))
     feed.drive.start()

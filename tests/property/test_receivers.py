@@ -17,10 +17,10 @@ from edge.sources.gnss.nmea import Nmea
 from shared.clock import NS_PER_S
 from shared.errors import WireError
 from shared.messages import GpsFix, Header
-from tests.rig.gps_receiver import Reported, burst, gpsd_report, sentence
+from tests.rig.gps_receiver import ReportedFix, burst, gpsd_report, sentence
 
 WHOLE = [
-    line for values in (burst, gpsd_report) for line in values(Reported(std_m=1.0)).split(b"\n")
+    line for values in (burst, gpsd_report) for line in values(ReportedFix(std_m=1.0)).split(b"\n")
 ]
 FIELDS = st.text("0123456789.,-+eENSWAVMnaif ", max_size=60)
 KINDS = st.sampled_from(["GNGGA", "GPRMC", "GNGST", "GNGSA", "GNGNS", "PUBX", "GPGSV"])

@@ -51,7 +51,7 @@ POSTURES = tuple(_ANGLES)
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class PostureStay:
     """One stay in a posture, or a walk where ``walks`` says so."""
 
     posture: BodyPosture
@@ -69,7 +69,7 @@ class PosedBody:
 
 
 def posed_body(
-    acts: Sequence[Act],
+    acts: Sequence[PostureStay],
     rng: np.random.Generator,
     mounts: Mapping[str, Rotation] | None = None,
     noise: float = 1.0,
@@ -113,7 +113,9 @@ def posed_body(
     return PosedBody(samples, np.rint(t_s * NS_PER_S).astype(np.int64), truth)
 
 
-def _move(act: Act, t_s: Floats, rows: slice, tips: dict[str, Floats], bounces: Floats) -> None:
+def _move(
+    act: PostureStay, t_s: Floats, rows: slice, tips: dict[str, Floats], bounces: Floats
+) -> None:
     """Add the motion of a walk, or of hands and knees."""
     period_s = _STRIDE_S if act.walks else 1.6
     phase = (t_s[rows] / period_s) % 1.0

@@ -72,13 +72,13 @@ def wait_linked(station: Bus, unit: Bus) -> None:
 
 
 @dataclass
-class Ends:
+class BusEnds:
     station: Bus
     unit: Bus
     fabric: Fabric
 
 
-class Heard:
+class ReceivedMessages:
     """A handler that remembers."""
 
     def __init__(self) -> None:
@@ -91,7 +91,7 @@ class Heard:
         return len(self.samples) >= count
 
 
-def publish_until_received(publisher: Bus, key: str, received: Heard) -> None:
+def publish_until_received(publisher: Bus, key: str, received: ReceivedMessages) -> None:
     """A subscription takes a moment to reach the other side; then it stands."""
 
     def arrived() -> bool:

@@ -18,7 +18,7 @@ from shared.messages.recording import (
 from tests.rig.recorded_unit import U
 
 
-class TellingUnit:
+class RecordingsUnit:
     """A unit that has these files, and of which a test says what becomes of them meanwhile."""
 
     def __init__(self, **files: bytes) -> None:

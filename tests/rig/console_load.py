@@ -26,7 +26,7 @@ _TEXT, _PING, _PONG = 1, 9, 10
 _SNAPSHOT = b'{"type":"snapshot"'
 
 
-class Seen(NamedTuple):
+class ConsoleTraffic(NamedTuple):
     """Traffic to consoles of one kind: of the one that got least, and in total."""
 
     onlookers: int
@@ -35,7 +35,7 @@ class Seen(NamedTuple):
     cut_off: int
 
 
-class Onlookers:
+class ConsoleGroup:
     """``quick`` consoles that read whatever comes and ``slow`` ones that hardly do."""
 
     def __init__(self, api: Api, quick: int, slow: int) -> None:
@@ -45,7 +45,7 @@ class Onlookers:
         self._thread = Thread(target=self._look, name="bench-onlookers", daemon=True)
         self._thread.start()
 
-    def close(self) -> tuple[Seen, Seen]:
+    def close(self) -> tuple[ConsoleTraffic, ConsoleTraffic]:
         """Closes all; traffic to the quick ones and to the slow ones."""
         self._closing.set()
         self._thread.join()
@@ -150,8 +150,8 @@ class _Onlooker:
             self.socket.send(bytes([0x80 | _PONG, 0x80 | len(beginning)]) + mask + masked)
 
 
-def _seen(onlookers: list[_Onlooker]) -> Seen:
-    return Seen(
+def _seen(onlookers: list[_Onlooker]) -> ConsoleTraffic:
+    return ConsoleTraffic(
         len(onlookers),
         min((one.messages for one in onlookers), default=0),
         sum(one.snapshots for one in onlookers),

@@ -29,7 +29,7 @@ from base_station.views.wire import (
     unit,
 )
 from shared.clock import ManualClock
-from tests.rig.desk_station import DeskStation
+from tests.rig.in_process_station import InProcessStation
 from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
 
 _SOURCES: Final = Path(__file__).resolve().parents[2] / "base_station/console/src"
@@ -176,7 +176,7 @@ def answer_types() -> str:
 
 def _api_schemas() -> dict[str, Any]:
     with TemporaryDirectory() as folder:
-        station = DeskStation(Path(folder), ManualClock())
+        station = InProcessStation(Path(folder), ManualClock())
         try:
             schemas: dict[str, Any] = station.app.openapi()["components"]["schemas"]
         finally:

@@ -84,7 +84,7 @@ def some_photo() -> bytes:
     return normalize_photo(picture.getvalue())[0]
 
 
-class Story:
+class ErasureScenario:
     """A station's folder after an incident in which Ana and then Bo wore one unit.
 
     ``older``: with names in the log, as earlier versions wrote it.
@@ -191,8 +191,8 @@ def put_person(store: Store, person_id: str, name: str) -> None:
         )
 
 
-def forget(story: Story, what: str) -> None:
-    station_app.forget(story.folder, what, lambda _: None, lambda _: None)
+def forget(scenario: ErasureScenario, what: str) -> None:
+    station_app.forget(scenario.folder, what, lambda _: None, lambda _: None)
 
 
 def names_in(stored: bytes, name: str) -> list[str]:

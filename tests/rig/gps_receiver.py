@@ -16,7 +16,7 @@ DAY_S = 86_400
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportedFix:
     """One fix, as a test wants it to be said; NaN is left empty."""
 
     of_day_s: float = 34_045.0  # 09:27:25
@@ -52,7 +52,7 @@ def clock_time(of_day_s: float) -> str:
     return f"{hour:02d}{minute:02d}{second:02d}.{rest:02d}"
 
 
-def place_words(reported: Reported) -> str:
+def place_words(reported: ReportedFix) -> str:
     if math.isnan(reported.lat_deg):
         return ",,,"
     words = []
@@ -66,7 +66,7 @@ def number(value: float, digits: int = 2) -> str:
     return "" if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def gga(reported: Reported) -> bytes:
+def gga(reported: ReportedFix) -> bytes:
     sea_m = reported.height_m - reported.sep_m
     height = f"{number(sea_m, 3)},M,{number(reported.sep_m, 3)},M"
     return sentence(
@@ -75,7 +75,7 @@ def gga(reported: Reported) -> bytes:
     )
 
 
-def rmc(reported: Reported) -> bytes:
+def rmc(reported: ReportedFix) -> bytes:
     status, mode = ("A", "A") if reported.mode > 1 else ("V", "N")
     knots = reported.speed_mps * 3600.0 / 1852.0
     return sentence(
@@ -84,14 +84,14 @@ def rmc(reported: Reported) -> bytes:
     )
 
 
-def gsa(reported: Reported, system: int = 1) -> bytes:
+def gsa(reported: ReportedFix, system: int = 1) -> bytes:
     dops = f"{number(1.6)},{number(reported.hdop)},{number(reported.vdop)}"
     return sentence(
         f"{reported.talker}GSA,A,{reported.mode},02,05,07,13,15,20,29,30,,,,,{dops},{system}"
     )
 
 
-def gst(reported: Reported) -> bytes:
+def gst(reported: ReportedFix) -> bytes:
     """Empty, as a u-blox says it without a fix, where nothing is known."""
     return sentence(
         f"{reported.talker}GST,{clock_time(reported.of_day_s)},19,,,,{number(reported.std_m)},"
@@ -99,7 +99,7 @@ def gst(reported: Reported) -> bytes:
     )
 
 
-def burst(reported: Reported) -> bytes:
+def burst(reported: ReportedFix) -> bytes:
     """One second of a multi-constellation u-blox as delivered, with GST where it has one."""
     parts = [
         rmc(reported),
@@ -134,7 +134,7 @@ def iso(of_day_s: float) -> str:
     return f"2026-11-21T{text[:2]}:{text[2:4]}:{text[4:6]}.{text[7:]}0Z"
 
 
-def gpsd_report(reported: Reported, device: str = DEVICE) -> bytes:
+def gpsd_report(reported: ReportedFix, device: str = DEVICE) -> bytes:
     """A fix with the sky before it, and GST where there is one."""
     sky = json_line(
         "SKY", device=device, hdop=reported.hdop, vdop=reported.vdop, uSat=reported.satellites
@@ -198,7 +198,7 @@ class GpsdServer(TcpDevice):
         )
 
 
-class Hasty:
+class AcceleratedClock:
     """A clock that goes ``speed`` times as fast, so that nobody waits for a silence."""
 
     def __init__(self, speed: int = 20) -> None:

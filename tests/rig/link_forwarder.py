@@ -35,7 +35,7 @@ class Conditions(msgspec.Struct, frozen=True):
     dark: bool = False  # nothing passes
 
 
-class Reported(msgspec.Struct, frozen=True):
+class LinkConditions(msgspec.Struct, frozen=True):
     """Conditions of the link from now on."""
 
     there: Conditions  # from the first device to the second
@@ -93,7 +93,7 @@ def forward(first: int, second: int, seed: int) -> None:
     def receive() -> bool:
         line = sys.stdin.buffer.readline()
         if line:
-            conditions = msgspec.json.decode(line, type=Reported)
+            conditions = msgspec.json.decode(line, type=LinkConditions)
             there.set(conditions.there)
             back.set(conditions.back)
             print("set", flush=True)

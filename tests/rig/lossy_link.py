@@ -20,7 +20,7 @@ from typing import TypeVar
 import msgspec
 
 from shared.errors import BusError
-from tests.rig.link_forwarder import Conditions, Reported
+from tests.rig.link_forwarder import Conditions, LinkConditions
 
 T = TypeVar("T")
 
@@ -105,7 +105,7 @@ class LossyLink:
         """``down`` from the station to the units, ``up`` the other way, the same if not given.
         Holds for all that is sent from now on.
         """
-        reported = Reported(there=down, back=down if up is None else up)
+        reported = LinkConditions(there=down, back=down if up is None else up)
         assert self._forwarder.stdin is not None
         assert self._forwarder.stdout is not None
         self._forwarder.stdin.write(msgspec.json.encode(reported) + b"\n")

@@ -13,7 +13,7 @@ import numpy as np
 from edge.activity.body_posture import BodyPostureEstimator
 from shared.clock import NS_PER_S
 from shared.messages import BodyPosture
-from tests.rig.body_postures import POSTURES, Act, PosedBody, posed_body
+from tests.rig.body_postures import POSTURES, PosedBody, PostureStay, posed_body
 
 SENSORS = (("chest",), ("chest", "thigh"), ("thigh", "shank"), ("chest", "thigh", "shank"))
 WALK_S = 15.0
@@ -27,8 +27,10 @@ Table = Mapping[BodyPosture, Counter[BodyPosture]]
 def random_body(seed: int, noise: float = 1.0) -> PosedBody:
     """A walk, then each posture once, in any order."""
     rng = np.random.default_rng(seed)
-    acts = [Act(BodyPosture.STANDING, WALK_S, walks=True)]
-    acts += [Act(POSTURES[index], _STAY_S) for index in rng.permutation(len(POSTURES)).tolist()]
+    acts = [PostureStay(BodyPosture.STANDING, WALK_S, walks=True)]
+    acts += [
+        PostureStay(POSTURES[index], _STAY_S) for index in rng.permutation(len(POSTURES)).tolist()
+    ]
     return posed_body(acts, rng, noise=noise)
 
 

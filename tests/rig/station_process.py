@@ -43,7 +43,7 @@ _STOP_TIMEOUT_S = 30.0
 PlainTcp = Annotated[bool, typer.Option("--plain", help="Over plain TCP instead of mutual TLS.")]
 
 
-class Recorded(NamedTuple):
+class RunRecords(NamedTuple):
     """Contents of log and database after the run."""
 
     from_units: int  # messages, each counted once
@@ -88,7 +88,7 @@ class StationProcess:
     def log(self) -> Path:
         return self._data.log
 
-    def recorded(self) -> Recorded:
+    def recorded(self) -> RunRecords:
         """Read after ``stop``."""
         messages: Counter[tuple[str, int, int]] = Counter()
         seconds: set[tuple[str, int]] = set()
@@ -107,7 +107,7 @@ class StationProcess:
         with closing(sqlite3.connect(self._data.database)) as database:
             [(points,)] = database.execute("SELECT count(*) FROM tracks").fetchall()
         repeated = sum(messages.values()) - len(messages)
-        return Recorded(len(messages), repeated, len(damage), len(seconds), int(points))
+        return RunRecords(len(messages), repeated, len(damage), len(seconds), int(points))
 
     def cpu_s(self) -> float:
         """Spent since it began, children included."""

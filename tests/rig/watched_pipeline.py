@@ -66,7 +66,7 @@ def apart_m(one: TrailPoint, other: TrailPoint) -> float:
     return math.dist((one.north_m, one.east_m), (other.north_m, other.east_m))
 
 
-class Watched(Script):
+class WatchedScript(Script):
     """Consoles are told after every event; units that are ``away`` write into their journals."""
 
     def __init__(self, pipeline: StationPipeline | None = None) -> None:
@@ -97,9 +97,9 @@ class Watched(Script):
             late = self.journal.pop()
             self.record(backfilled_key(late.header.unit_id, POSITION.suffix), encode(late))
 
-    def restarted(self) -> Watched:
+    def restarted(self) -> WatchedScript:
         """Another station that goes on from here; who looks at it has just opened the page."""
-        other = Watched(make_pipeline(read_checkpoint(self.pipeline.checkpoint())))
+        other = WatchedScript(make_pipeline(read_checkpoint(self.pipeline.checkpoint())))
         other.now_s, other._seqs = self.now_s, dict(self._seqs)
         other.away, other.journal = set(self.away), list(self.journal)
         other.publisher.reset()

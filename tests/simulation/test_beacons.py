@@ -25,7 +25,7 @@ PLAN = (
     b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
     b'{"floor":1,"down_m":-3.2}]},"features":[]}'
 )
-Said = list[tuple[float, Message]]
+TimedMessages = list[tuple[float, Message]]
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def simulation() -> Simulation:
 
 
 @pytest.fixture(scope="module")
-def stated(simulation: Simulation) -> Said:
+def stated(simulation: Simulation) -> TimedMessages:
     identity = UnitIdentity("1", "passes-beacons", "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     unit = TrackerPipeline(
@@ -46,7 +46,7 @@ def stated(simulation: Simulation) -> Said:
     return [(one.header.t_mono_ns / NS_PER_S, one) for one in reported]
 
 
-def reported(simulation: Simulation, stated: Said, *, with_beacons: bool) -> Script:
+def reported(simulation: Simulation, stated: TimedMessages, *, with_beacons: bool) -> Script:
     """A station whose unit begins where it does; which way it looked is off by ten degrees."""
     script = Script()
     script.register("FF-01")
@@ -81,7 +81,9 @@ def trail_off_m(simulation: Simulation, script: Script) -> float:
     return float(np.linalg.norm(off, axis=1).mean())
 
 
-def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, stated: Said) -> None:
+def test_beacons_on_the_way_correct_the_trail(
+    simulation: Simulation, stated: TimedMessages
+) -> None:
     plain = reported(simulation, stated, with_beacons=False)
     pinned = reported(simulation, stated, with_beacons=True)
     state = pinned.pipeline.state
@@ -92,7 +94,7 @@ def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, stated: Sa
 
 
 def test_unplaced_beacons_wait_and_are_used_once_placed(
-    simulation: Simulation, stated: Said
+    simulation: Simulation, stated: TimedMessages
 ) -> None:
     script = reported(simulation, stated, with_beacons=False)
     state = script.pipeline.state

@@ -12,7 +12,7 @@ from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.error_state import GYRO_BIAS
 from edge.tracker.foot.eskf import EskfTracker
-from tests.bench.tracker.wearers import KINDS, Wearer, Wore, stray, wearers_table
+from tests.bench.tracker.wearers import KINDS, Wearer, WearerKindErrors, stray, wearers_table
 from tests.rig.inertial_walk import inertial_samples
 
 
@@ -48,7 +48,7 @@ def test_bias_estimate_of_a_rest_is_independent_of_the_sample_rate():
 
 def test_table_names_the_activity_and_the_sensors():
     assert len({kind.does for kind in KINDS}) == len(KINDS)
-    one = Wore("waits", False, 0.012, 0.5, 2.0, 3.0, 0.1, 0.2, 0.95, 0.0)
+    one = WearerKindErrors("waits", False, 0.012, 0.5, 2.0, 3.0, 0.1, 0.2, 0.95, 0.0)
     assert [next(iter(column.cells)) for column in wearers_table([one]).columns] == [
         "waits", "data sheet", "1.2", "0.50", "2.0 / 3.0", "0.10 / 0.20", "95", "0",
     ]  # fmt: skip

@@ -17,7 +17,7 @@ from rich.progress import Progress
 from shared.bench_figures import FiguresFile, write_figures
 from tests.bench.bus.report import BusReport, table_of
 from tests.rig.console_client import Console, watching
-from tests.rig.console_load import Onlookers, Seen
+from tests.rig.console_load import ConsoleGroup, ConsoleTraffic
 from tests.rig.latency import latencies_ms, latency_of
 from tests.rig.pacing import wait_until
 from tests.rig.raw_zenoh_baseline import BareFigures, bare_subscriber, measure_flood, measure_steady
@@ -26,7 +26,7 @@ from tests.rig.simulated_units import BenchUnit, speak_in_turn, unit_names
 from tests.rig.station_process import (
     Membership,
     PlainTcp,
-    Recorded,
+    RunRecords,
     StationProcess,
     free_port,
     station_process,
@@ -111,7 +111,7 @@ def _run_station(
         station.api.post("/units", {"unit_id": unit.unit_id})
     wait_until("the station listens", lambda: all(unit.is_received for unit in units))
     consoles = watching(station.api, load.consoles, closing)
-    onlookers = Onlookers(station.api, load.onlookers, load.slow)
+    onlookers = ConsoleGroup(station.api, load.onlookers, load.slow)
     for unit in units:
         unit.introduce()
     time.sleep(_SETTLE_S)
@@ -146,11 +146,11 @@ def _run_station(
 
 
 def _report(
-    recorded: Recorded,
+    recorded: RunRecords,
     bare: tuple[BareFigures, BareFigures],
     console: Console,
     speakers: list[BenchUnit],
-    onlookers: tuple[Seen, Seen],
+    onlookers: tuple[ConsoleTraffic, ConsoleTraffic],
     **measured: float,
 ) -> BusReport:
     steady, flood = bare

@@ -8,7 +8,7 @@ from rich.table import Table
 
 from base_station.engine.engine import DELTA_NS
 from shared.clock import NS_PER_S
-from tests.rig.console_load import Seen
+from tests.rig.console_load import ConsoleTraffic
 from tests.rig.latency import Latency
 
 _LATENCY_P99_MS = 300.0  # to reach
@@ -39,8 +39,8 @@ class BusReport:
     memory_mb: float
     console_gaps: int
     console_kbit_s: float
-    onlookers: Seen
-    slow: Seen
+    onlookers: ConsoleTraffic
+    slow: ConsoleTraffic
     problems: tuple[str, ...]
     bare_latency: Latency
     bare_lost: int
@@ -83,7 +83,7 @@ def table_of(report: BusReport) -> Table:
     return table
 
 
-def _onlookers(name: str, seen: Seen) -> list[tuple[str, str, str]]:
+def _onlookers(name: str, seen: ConsoleTraffic) -> list[tuple[str, str, str]]:
     if seen.onlookers == 0:
         return []
     return [

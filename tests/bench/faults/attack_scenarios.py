@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 from tests.bench.faults.bus_identities import BABBLER, GONE, LATE, OTHER, UNIT
 from tests.bench.faults.site import Site
-from tests.rig.console_load import Onlookers
+from tests.rig.console_load import ConsoleGroup
 from tests.rig.link_forwarder import Conditions
 from tests.rig.login_flood import Flood, LoginFlood, guesses, slow_bodies
 from tests.rig.lossy_link import CLEAN
@@ -18,7 +18,7 @@ from tests.rig.picture_flood import photographs_at_once
 
 
 @dataclass(frozen=True, slots=True)
-class Meddling:
+class HostileBusClient:
     """Somebody else is on the bus, or tries to be."""
 
     name: str
@@ -35,7 +35,7 @@ class Meddling:
 
 
 @dataclass(frozen=True, slots=True)
-class Crowd:
+class ManyConsoles:
     """Many look on, and some of them read slowly."""
 
     name: str
@@ -47,7 +47,7 @@ class Crowd:
 
     def happen(self, site: Site) -> None:
         api = site.link.station.call(lambda: site.station.api)
-        crowd = site.link.station.call(lambda: Onlookers(api, self.quick, self.slow))
+        crowd = site.link.station.call(lambda: ConsoleGroup(api, self.quick, self.slow))
         time.sleep(self.seconds)
         crowd.close()
 
@@ -85,7 +85,7 @@ class EarlierUnits:
 
 
 @dataclass(frozen=True, slots=True)
-class Attack:
+class CertificateHolderAttack:
     """Somebody with a certificate wants to stop the station."""
 
     name: str
@@ -155,22 +155,24 @@ _FLOODED_S = 120.0  # more than it lasts: it ends when the fault does
 _LINKED_WITHIN_S = 3.0  # to reach: else it is heard only after the fault's end
 
 MEDDLING = (
-    Meddling("said again, in any order, backdated", "repeat", "unit"),
-    Meddling("messages that make no sense", "babble", "babbler", (BABBLER,)),
-    Meddling("A speaks as B", "forge", "other", (OTHER, UNIT), bench_only=True),
-    Meddling("certificate: none", "forge", "without", bench_only=True),
-    Meddling("certificate: foreign", "forge", "foreign", bench_only=True),
-    Meddling("certificate: expired", "forge", "expired", (LATE, UNIT), bench_only=True),
-    Meddling("certificate: revoked", "forge", "revoked", (GONE, UNIT), bench_only=True),
-    Crowd("200 consoles, and 5 that hardly read", 200, 5),
+    HostileBusClient("said again, in any order, backdated", "repeat", "unit"),
+    HostileBusClient("messages that make no sense", "babble", "babbler", (BABBLER,)),
+    HostileBusClient("A speaks as B", "forge", "other", (OTHER, UNIT), bench_only=True),
+    HostileBusClient("certificate: none", "forge", "without", bench_only=True),
+    HostileBusClient("certificate: foreign", "forge", "foreign", bench_only=True),
+    HostileBusClient("certificate: expired", "forge", "expired", (LATE, UNIT), bench_only=True),
+    HostileBusClient("certificate: revoked", "forge", "revoked", (GONE, UNIT), bench_only=True),
+    ManyConsoles("200 consoles, and 5 that hardly read", 200, 5),
     ConnectionFlood("attack: 1,500 silent connections, 200/s", "silent", held=1500, per_s=200.0),
     ConnectionFlood("attack: 200/s begin a handshake", "hello", held=500, per_s=200.0),
     EarlierUnits("attack: 40 units of another authority"),
     ConsoleFlood("attack: 120 addresses guess passwords", guesses(1.0), 120),
     ConsoleFlood("attack: 1,440 slow bodies from 12 addresses", slow_bodies(120), 12),
     Photographs("attack: 30 photographs of 50 megapixels", 30),
-    Attack("attack: 50 sessions/s, revoked", "sessions", "revoked"),
-    Attack("attack: a journal without end", "journal", "other"),
-    Attack("attack: a journal of 2 kB messages", "large journal", "other", seconds=25.0),
-    Attack("attack: a token comes and goes", "toggle", "babbler"),
+    CertificateHolderAttack("attack: 50 sessions/s, revoked", "sessions", "revoked"),
+    CertificateHolderAttack("attack: a journal without end", "journal", "other"),
+    CertificateHolderAttack(
+        "attack: a journal of 2 kB messages", "large journal", "other", seconds=25.0
+    ),
+    CertificateHolderAttack("attack: a token comes and goes", "toggle", "babbler"),
 )

@@ -127,11 +127,11 @@ def _report(
     arrived_ns = {record.message: record.t_ns for record in reversed(logged)}
     sent = stated - before
     records = [record for record in logged if record.message in sent]
-    heard_ns = [r.t_ns for r in records if r.live and r.t_ns > over_ns]
+    received_ns = [r.t_ns for r in records if r.live and r.t_ns > over_ns]
     complete = stated_before_end <= arrived_ns.keys()
     complete_ns = max(arrived_ns[one] for one in stated_before_end) if complete else None
     alerts_s = [
-        (r.t_ns - (max(r.said_ns, over_ns) if r.t_ns > over_ns else r.said_ns)) / NS_PER_S
+        (r.t_ns - (max(r.sent_ns, over_ns) if r.t_ns > over_ns else r.sent_ns)) / NS_PER_S
         for r in records
         if r.alert
     ]
@@ -144,7 +144,7 @@ def _report(
         duplicates=len(logged) - len(arrived_ns),
         forged=one.forged(),
         fetched=sum(not record.live for record in records),
-        received_s=(min(heard_ns) - over_ns) / NS_PER_S if heard_ns else None,
+        received_s=(min(received_ns) - over_ns) / NS_PER_S if received_ns else None,
         complete_s=None if complete_ns is None else max(0.0, (complete_ns - over_ns) / NS_PER_S),
         alerts=len(alerts_s),
         alert_worst_s=max(alerts_s, default=None),

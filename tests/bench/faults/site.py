@@ -49,7 +49,7 @@ class Logged(NamedTuple):
 
     message: MessageOfUnit
     t_ns: int  # when the station wrote it
-    said_ns: int
+    sent_ns: int
     live: bool
     alert: bool
 
@@ -206,7 +206,7 @@ class Site:
             yield Logged(
                 message=(header.boot_id, header.seq),
                 t_ns=t_ns,
-                said_ns=header.t_utc_ns,
+                sent_ns=header.t_utc_ns,
                 live=not is_backfilled(key),
                 alert=channel.qos is Qos.ALERT,
             )

@@ -30,7 +30,7 @@ from edge.simulation.simulation import (
 from edge.sources.recording import RecordingSource
 from edge.tracker.registry import TRACKERS
 from shared.bench_figures import FiguresFile, write_figures
-from tests.bench.tracker.magnetic_north import NorthFound, find_north, north_table
+from tests.bench.tracker.magnetic_north import NorthErrors, find_north, north_table
 from tests.bench.tracker.simulated_calibration import calibration_of
 from tests.bench.tracker.walk_errors import WalkErrors, rms, track, walk_errors
 from tests.rig.inertial_walk import samples
@@ -115,8 +115,8 @@ def _jobs(tracker: str) -> Iterator[Callable[[], Comparison]]:
         yield job("calibration", name, name, _as_is, _calibrated)
 
 
-def _norths(tracker: str) -> Iterator[Callable[[], NorthFound]]:
-    def find(walks: str, change: Change, **changes: object) -> Callable[[], NorthFound]:
+def _norths(tracker: str) -> Iterator[Callable[[], NorthErrors]]:
+    def find(walks: str, change: Change, **changes: object) -> Callable[[], NorthErrors]:
         settings = (("duration_s", _SEARCH_S), *changes.items())
         simulations = [
             _simulation("search-ground-floor", CONSUMER_SENSORS, settings, seed) for seed in SEEDS

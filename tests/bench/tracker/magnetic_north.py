@@ -24,7 +24,7 @@ _NEW_YEAR_NS = round(datetime(2026, 1, 1, tzinfo=UTC).timestamp() * 1e9)
 
 
 @dataclass(frozen=True, slots=True)
-class NorthFound:
+class NorthErrors:
     """Over walks of one kind, root mean squares where it was reported."""
 
     walks: str
@@ -47,7 +47,7 @@ def find_north(
     simulations: Sequence[Simulation],
     samples_of: Callable[[Simulation], ImuBatch],
     tracker: str,
-) -> NorthFound:
+) -> NorthErrors:
     """Calibrate each simulated unit by the book and track its walk with the field known."""
     offs, stds, reported = [], [], []
     for simulation in simulations:
@@ -61,8 +61,8 @@ def find_north(
         reported.append(share)
     off_rad, std_rad = np.concatenate(offs), np.concatenate(stds)
     if not len(off_rad):
-        return NorthFound(walks, 0.0, 0.0, 0.0, 0.0)
-    return NorthFound(
+        return NorthErrors(walks, 0.0, 0.0, 0.0, 0.0)
+    return NorthErrors(
         walks,
         reported=float(np.mean(reported)),
         off_deg=float(np.degrees(rms(off_rad))),
@@ -83,7 +83,7 @@ def _north_of(rows: TrackBatch, simulation: Simulation) -> tuple[Floats, Floats,
     return wrapped_rad, rows.magnetic_north_std_rad[known], len(known) / len(every)
 
 
-def north_table(found: Sequence[NorthFound]) -> Table:
+def north_table(found: Sequence[NorthErrors]) -> Table:
     table = Table(title="Magnetic north of a calibrated unit (over stated deviation; 1 is honest)")
     for title in ("walks", "reported", "off, deg", "stated, deg"):
         table.add_column(title)

@@ -56,7 +56,7 @@ class Wearer:
 
 
 @dataclass(frozen=True, slots=True)
-class Strayed:
+class WearerErrors:
     """Errors of one wearer, with the stated uncertainty."""
 
     path: float  # largest horizontal error by the length of the walk
@@ -70,7 +70,7 @@ class Strayed:
 
 
 @dataclass(frozen=True, slots=True)
-class Wore:
+class WearerKindErrors:
     """All wearers of one kind with sensors of one kind; root mean squares."""
 
     does: str
@@ -171,7 +171,7 @@ KINDS: tuple[Wearer, ...] = (
 )
 
 
-def measure_wearers(wearers: int = WEARERS) -> list[Wore]:
+def measure_wearers(wearers: int = WEARERS) -> list[WearerKindErrors]:
     """Let all of them walk."""
     jobs = [(kind, calibrated) for kind in KINDS for calibrated in (True, False)]
     bar = progress_bar(jobs, description="Walking", console=Console(stderr=True), transient=True)
@@ -183,7 +183,7 @@ def measure_wearers(wearers: int = WEARERS) -> list[Wore]:
     ]
 
 
-def stray(kind: Wearer, seed: int, calibrated: bool) -> Strayed:
+def stray(kind: Wearer, seed: int, calibrated: bool) -> WearerErrors:
     """Let one of them walk, track and compare."""
     sensors = CONSUMER_SENSORS if calibrated else UNCALIBRATED_SENSORS
     scenario = Scenario(kind.does, kind.does, kind.legs, rate_hz=kind.rate_hz)
@@ -199,7 +199,7 @@ def stray(kind: Wearer, seed: int, calibrated: bool) -> Strayed:
     nees = horizontal_nees(rows.position_n_m[at], way_m, rows.position_cov_m2[at])[1:]
     error_m = float(np.hypot(off_m[:, 0], off_m[:, 1]).max())
     far_off = (nees > 9.0 * CHI2_95_2DOF) & (rows.quality[at][1:] == Quality.GOOD)
-    return Strayed(
+    return WearerErrors(
         path=error_m / _length_m(way_m),
         error_m=error_m,
         heading_rad=float(drift_rad[-1]),
@@ -217,11 +217,11 @@ def _length_m(way_m: Floats) -> float:
     return max(float(steps_m[steps_m > 0.15].sum()), 1.0)
 
 
-def _together(kind: Wearer, calibrated: bool, strayed: list[Strayed]) -> Wore:
+def _together(kind: Wearer, calibrated: bool, strayed: list[WearerErrors]) -> WearerKindErrors:
     def of(name: str) -> Floats:
         return np.array([getattr(one, name) for one in strayed])
 
-    return Wore(
+    return WearerKindErrors(
         does=kind.does,
         calibrated=calibrated,
         path=rms(of("path")),
@@ -235,7 +235,7 @@ def _together(kind: Wearer, calibrated: bool, strayed: list[Strayed]) -> Wore:
     )
 
 
-def wearers_table(results: list[Wore]) -> Table:
+def wearers_table(results: list[WearerKindErrors]) -> Table:
     table = Table(title="Simulated wearers: error beside what is stated of it")
     for title in ("wearer", "sensors"):
         table.add_column(title)

@@ -67,7 +67,7 @@ STEPS_MOST, STEP_PA = 4, 30.0
 
 
 @dataclass(frozen=True)
-class OdometryIncrements:
+class OdometryRows:
     """Output of a unit's tracker, row by row, in the unit's own frame."""
 
     place_m: Floats  # (n, 3)
@@ -77,7 +77,7 @@ class OdometryIncrements:
     distance_m: Floats  # (n,) truly walked
 
 
-def walk_it(rng: np.random.Generator, truth: Truth) -> OdometryIncrements:
+def walk_it(rng: np.random.Generator, truth: Truth) -> OdometryRows:
     steps_m = truth.steps_m
     lengths_m = np.linalg.norm(steps_m[:, :2], axis=1)
     moving_s = (lengths_m * RATE_HZ > MOVING_MPS) / RATE_HZ
@@ -98,7 +98,7 @@ def walk_it(rng: np.random.Generator, truth: Truth) -> OdometryIncrements:
     )
     stated /= TOO_SURE if rng.random() < 0.5 else 1.0
     place_m = np.column_stack([np.cumsum(own_m, axis=0), _heights(rng, steps_m)])
-    return OdometryIncrements(place_m, turn_rad, drift_rad, stated, np.cumsum(lengths_m))
+    return OdometryRows(place_m, turn_rad, drift_rad, stated, np.cumsum(lengths_m))
 
 
 def _turned(steps_m: Floats) -> Floats:
@@ -188,28 +188,28 @@ def walls_m(building: SteelBuilding, north_m: float, east_m: float) -> float:
 
 
 @dataclass(frozen=True)
-class Air:
+class SharedPressure:
     """The pressure that all barometers of an incident share, as a height that it feigns."""
 
     weather_pa: Floats  # (n,)
     inside_pa: Floats  # (n,) what doors and fans add in the building
 
 
-def draw_air(rng: np.random.Generator, t_s: Floats) -> Air:
+def draw_air(rng: np.random.Generator, t_s: Floats) -> SharedPressure:
     weather_pa = rng.uniform(-1.0, 1.0) * WEATHER_PA_PER_H * t_s / 3600.0
     inside_pa = np.zeros(len(t_s))
     for _ in range(int(rng.integers(1, STEPS_MOST + 1))):
         inside_pa[t_s > rng.uniform(60.0, t_s[-1])] += rng.normal(0.0, STEP_PA)
-    return Air(weather_pa, inside_pa)
+    return SharedPressure(weather_pa, inside_pa)
 
 
-def pressures_pa(rng: np.random.Generator, air: Air, truth: Truth) -> Floats:
+def pressures_pa(rng: np.random.Generator, air: SharedPressure, truth: Truth) -> Floats:
     """Readings of one person's barometer (n,)."""
     inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
     return _stated_pa(rng, -truth.place_m[:, 2], air.weather_pa + air.inside_pa * inside)
 
 
-def reference_pa(rng: np.random.Generator, air: Air) -> Floats:
+def reference_pa(rng: np.random.Generator, air: SharedPressure) -> Floats:
     """Readings of the station's own barometer (n,)."""
     return _stated_pa(rng, np.zeros(len(air.weather_pa)), air.weather_pa)
 
@@ -221,12 +221,12 @@ def _stated_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> 
     return np.asarray(true_pa + noise_pa, dtype=np.float64)
 
 
-def positions_of(truth: Truth, own: OdometryIncrements) -> list[Position]:
+def positions_of(truth: Truth, own: OdometryRows) -> list[Position]:
     """Positions published for such a path by a unit without a name and a barometer."""
     return [_position_of(truth, own, row) for row in range(len(truth.t_s))]
 
 
-def _position_of(truth: Truth, own: OdometryIncrements, row: int) -> Position:
+def _position_of(truth: Truth, own: OdometryRows, row: int) -> Position:
     north_m, east_m, down_m = own.place_m[row].tolist()
     heading_std_rad = float(own.heading_std_rad[row])
     moved_m = truth.steps_m[row] if row else np.zeros(3)

@@ -25,7 +25,7 @@ from shared.published_walk import PublishedWalk, read_walk
 from tests.rig import message_factory
 from tests.rig.incident.building import SteelBuilding
 from tests.rig.incident.people import LASTS_S, RATE_HZ, WALK_MPS, Script, Truth
-from tests.rig.incident.walking import Walked
+from tests.rig.incident.walking import PersonWalk
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ PATIENCE_S = 600.0
 
 def tracked_walks(
     rng: np.random.Generator, scripts: Sequence[Script], building: SteelBuilding
-) -> list[Walked]:
+) -> list[PersonWalk]:
     """All as long as the shortest."""
     seed = int(rng.integers(2**31))
     with tempfile.TemporaryDirectory(prefix="muster-walks-") as name:
@@ -94,7 +94,7 @@ def _walk(folder: Path, numbers: Sequence[int], seed: int, *, uncalibrated: bool
         raise UserError(f"simulated walks could not be tracked: {done.stderr.strip()[-500:]}")
 
 
-def _walked(walk: PublishedWalk, script: Script, building: SteelBuilding, count: int) -> Walked:
+def _walked(walk: PublishedWalk, script: Script, building: SteelBuilding, count: int) -> PersonWalk:
     t_s, place_m = walk.t_s[:count], walk.truth_m[:count]
     inside = np.flatnonzero([building.depth_inside_m(n, e) > 0.0 for n, e in place_m[:, :2]])
     goes_in_s, comes_out_s = float(t_s[inside[0]]), float(t_s[inside[-1]])
@@ -108,7 +108,7 @@ def _walked(walk: PublishedWalk, script: Script, building: SteelBuilding, count:
         )
         for position, at_s in zip(walk.positions[:count], t_s.tolist(), strict=True)
     ]
-    return Walked(truth, _turn_rad(truth, positions), positions)
+    return PersonWalk(truth, _turn_rad(truth, positions), positions)
 
 
 def _turn_rad(truth: Truth, positions: Sequence[Position]) -> float:

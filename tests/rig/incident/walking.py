@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Walked:
+class PersonWalk:
     """One person."""
 
     truth: Truth
@@ -37,18 +37,18 @@ class Walked:
         ]
 
 
-Walkers = Callable[[np.random.Generator, Sequence[Script], SteelBuilding], list[Walked]]
+Walkers = Callable[[np.random.Generator, Sequence[Script], SteelBuilding], list[PersonWalk]]
 
 
 def drawn_walks(
     rng: np.random.Generator,
     scripts: Sequence[Script],
     building: SteelBuilding,
-) -> list[Walked]:
+) -> list[PersonWalk]:
     """In straight lines at an even pace, with errors of a path as ``sensors`` draws them."""
     walks = []
     for script in scripts:
         truth = script.truth()
         own = walk_it(rng, truth)
-        walks.append(Walked(truth, own.turn_rad, positions_of(truth, own)))
+        walks.append(PersonWalk(truth, own.turn_rad, positions_of(truth, own)))
     return walks

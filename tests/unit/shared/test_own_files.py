@@ -23,7 +23,7 @@ from base_station.unit_sync.recordings.transfer import TransferState
 from shared.clock import ManualClock
 from shared.mcap_log import SegmentWriter, recover_log, rewrite_segment, segment_paths
 from shared.own_files import make_folder
-from tests.rig.changing_recordings import TellingUnit
+from tests.rig.changing_recordings import RecordingsUnit
 from tests.rig.recorded_unit import finish
 from tests.rig.small_log import KEY, T0_NS
 
@@ -74,7 +74,7 @@ def fill_database(data: Path) -> None:
 
 
 def pull_recording(data: Path) -> None:
-    fetch = finish(TellingUnit(one=b"samples").pull(DataFolder(data).recordings))
+    fetch = finish(RecordingsUnit(one=b"samples").pull(DataFolder(data).recordings))
     assert fetch.state is TransferState.DONE
 
 

@@ -13,7 +13,7 @@ from tests.rig.live_station import Screen
 from tests.rig.tak_scene import Scene, delta
 
 
-class Heard:
+class RecordingForwarder:
     """A forwarder that records its input."""
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class Source:
 
 
 def test_forwarder_begins_with_the_snapshot_and_gets_the_messages_of_consoles() -> None:
-    screen, received, picture = Screen(), Heard(), Scene().picture()
+    screen, received, picture = Screen(), RecordingForwarder(), Scene().picture()
     shown = LiveFanOut(screen, Forwarders([cast("Forwarder", received)]))
     source = Source(picture)
     shown.start(cast("LiveSource", source))

@@ -35,7 +35,7 @@ ALARM = AlarmChange(
 )
 
 
-class Decides:
+class FixedPipeline:
     """A pipeline with the same decisions for any input."""
 
     def __init__(self, outputs: list[Output]) -> None:
@@ -75,7 +75,7 @@ class Disk:
 
 def over(disk: Disk, outputs: list[Output]) -> WriteAhead:
     pipeline, publisher = (
-        cast("StationPipeline", Decides(outputs)),
+        cast("StationPipeline", FixedPipeline(outputs)),
         cast("ConsolePublisher", Publisher()),
     )
     return WriteAhead(pipeline, disk, (publisher,), Projector(), HealthMonitor())

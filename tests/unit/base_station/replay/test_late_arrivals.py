@@ -56,7 +56,7 @@ class Station:
     def __init__(
         self,
         folder: Path,
-        never_heard: str = "",
+        never_received: str = "",
         out_of_reach: str = "FF-01",
         script: JournaledScript | None = None,
     ) -> None:
@@ -68,9 +68,9 @@ class Station:
             script.say(message_factory.description(header, tracker=NO_TRACKER))
         for unit_id in self.walk.units:
             self.walk.start(unit_id)
-        self.script.out_of_reach = {never_heard}
+        self.script.out_of_reach = {never_received}
         self.go(INSIDE_S)
-        self.script.out_of_reach = {never_heard or out_of_reach}
+        self.script.out_of_reach = {never_received or out_of_reach}
         self.go(OUT_OF_REACH_S)
         self.script.act(CloseIncident("i1"))
         self.closed_ns = self.script.t_ns
@@ -229,7 +229,7 @@ def test_unit_never_received_while_it_was_open_has_a_trail(
     tmp_path: Path, in_time: Station
 ) -> None:
     """A radio that failed from the beginning, and a wearer who was placed by a person."""
-    station = Station(tmp_path, never_heard="FF-02")
+    station = Station(tmp_path, never_received="FF-02")
     station.script.now_s += 60.0
     station.script.out_of_reach.clear()
     for _ in range(5):

@@ -33,7 +33,7 @@ from tests.rig.round_walk import Walk, truth
 from tests.rig.station_script import START_NS, Script
 
 
-class Past:
+class ClosedIncident:
     """A closed incident of two units, with pins, in a store and a log."""
 
     def __init__(self, folder: Path, clock: ManualClock) -> None:
@@ -74,8 +74,8 @@ class Past:
 
 
 @pytest.fixture(scope="module")
-def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Past]:
-    past = Past(tmp_path_factory.mktemp("past"), ManualClock())
+def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ClosedIncident]:
+    past = ClosedIncident(tmp_path_factory.mktemp("past"), ManualClock())
     yield past
     past.store.close()
 
@@ -98,7 +98,7 @@ def hindsight_of(script: Script, store: Store, folder: Path) -> PostProcessor:
 
 
 @pytest.mark.slow
-def test_smoothed_trail_is_better_than_the_shown_and_both_are_kept(past: Past) -> None:
+def test_smoothed_trail_is_better_than_the_shown_and_both_are_kept(past: ClosedIncident) -> None:
     shown = past.records.tracks_of(past.incident)
     smoothed = past.post_processor.smoothed(past.incident)
     assert set(smoothed.tracks) == {"FF-01", "FF-02"}
@@ -107,7 +107,7 @@ def test_smoothed_trail_is_better_than_the_shown_and_both_are_kept(past: Past) -
     assert past.kept.of("i1") is not None
 
 
-def test_finished_result_is_not_made_again(past: Past) -> None:
+def test_finished_result_is_not_made_again(past: ClosedIncident) -> None:
     first = past.post_processor.smoothed(past.incident)
     again = past.post_processor.smoothed(past.incident)
     assert again.made_ns == first.made_ns
@@ -119,7 +119,7 @@ def test_finished_result_is_not_made_again(past: Past) -> None:
 
 
 @pytest.mark.slow
-def test_requests_during_the_work_get_the_same_result(past: Past, store: Store) -> None:
+def test_requests_during_the_work_get_the_same_result(past: ClosedIncident, store: Store) -> None:
     """It takes minutes for a long incident, and is done once for any number of requests."""
     opened: list[int] = []
 
@@ -137,7 +137,7 @@ def test_requests_during_the_work_get_the_same_result(past: Past, store: Store) 
 
 @pytest.mark.slow
 def test_recently_closed_incident_is_smoothed_without_a_request(
-    past: Past, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+    past: ClosedIncident, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     past.kept.put("i1", "gone", 0, {}, {}, None)
     past.post_processor.catch_up(past.records.incidents(), past.records.tracks_of)
@@ -150,7 +150,7 @@ def test_recently_closed_incident_is_smoothed_without_a_request(
     assert past.kept.report("i1") is not None
 
 
-def test_incident_closed_long_ago_waits_for_a_request(past: Past, store: Store) -> None:
+def test_incident_closed_long_ago_waits_for_a_request(past: ClosedIncident, store: Store) -> None:
     assert past.incident.closed_ns is not None
     clock = ManualClock(utc_ns=past.incident.closed_ns + LATELY_NS)
     kept = SmoothedTracks(store)
@@ -161,7 +161,7 @@ def test_incident_closed_long_ago_waits_for_a_request(past: Past, store: Store) 
 
 
 def test_failing_incident_is_given_up_and_the_next_is_not(
-    past: Past, store: Store, caplog: pytest.LogCaptureFixture
+    past: ClosedIncident, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     post_processor = PostProcessor(
         past.archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock(utc_ns=0)
@@ -196,7 +196,7 @@ class FullStore(SmoothedTracks):
 
 @pytest.mark.slow
 def test_full_disk_is_reported_once_and_the_result_kept_when_there_is_room(
-    past: Past, store: Store, caplog: pytest.LogCaptureFixture
+    past: ClosedIncident, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     kept, clock = FullStore(store), ManualClock(utc_ns=0)
     post_processor = PostProcessor(past.archive, SMOOTHERS[0], kept, clock)
@@ -222,7 +222,9 @@ def test_full_disk_is_reported_once_and_the_result_kept_when_there_is_room(
 
 
 @pytest.mark.slow
-def test_open_incident_has_all_its_records_whatever_the_clock(past: Past, store: Store) -> None:
+def test_open_incident_has_all_its_records_whatever_the_clock(
+    past: ClosedIncident, store: Store
+) -> None:
     """`muster base smooth` on a machine whose clock was set back: times continue from the last."""
     behind = ManualClock(utc_ns=past.incident.opened_ns + 10 * 10**9)
     post_processor = PostProcessor(past.archive, SMOOTHERS[0], SmoothedTracks(store), behind)
@@ -235,7 +237,7 @@ def test_open_incident_has_all_its_records_whatever_the_clock(past: Past, store:
     assert fractions == sorted(fractions)
 
 
-def test_raw_trail_is_the_own_path_from_its_start(past: Past) -> None:
+def test_raw_trail_is_the_own_path_from_its_start(past: ClosedIncident) -> None:
     raw = past.post_processor.raw(past.incident)["FF-01"]
     smoothed = past.post_processor.smoothed(past.incident).tracks["FF-01"]
     assert (raw[0].north_m, raw[0].east_m) == (smoothed[0].north_m, smoothed[0].east_m)
@@ -328,7 +330,7 @@ def test_unknown_begin_is_reported_as_such(reported: str, store: Store, tmp_path
 
 
 @pytest.mark.slow
-def test_raw_trails_and_assessment_are_kept_until_the_next_solution(past: Past) -> None:
+def test_raw_trails_and_assessment_are_kept_until_the_next_solution(past: ClosedIncident) -> None:
     shown = past.records.tracks_of(past.incident)
     report, raw = (
         past.post_processor.assess(past.incident, shown),
@@ -362,7 +364,7 @@ class SmoothedBeside(SmoothedTracks):
 
 
 @pytest.mark.slow
-def test_assessment_is_not_kept_beside_newer_trails(past: Past, store: Store) -> None:
+def test_assessment_is_not_kept_beside_newer_trails(past: ClosedIncident, store: Store) -> None:
     """`muster base smooth` beside a station that is just assessing the same incident."""
     clock, kept = ManualClock(), SmoothedBeside(store, past.incident)
     station = PostProcessor(past.archive, SMOOTHERS[0], kept, clock)
@@ -379,7 +381,9 @@ def test_assessment_is_not_kept_beside_newer_trails(past: Past, store: Store) ->
 
 
 @pytest.mark.slow
-def test_result_of_a_log_rewritten_meanwhile_is_not_kept(past: Past, store: Store) -> None:
+def test_result_of_a_log_rewritten_meanwhile_is_not_kept(
+    past: ClosedIncident, store: Store
+) -> None:
     """It may hold the way of an erased person."""
     rewritten = False
     archive = replace(past.archive, watch=lambda: lambda: rewritten)
@@ -395,14 +399,14 @@ def test_result_of_a_log_rewritten_meanwhile_is_not_kept(past: Past, store: Stor
     assert kept.has("i1")
 
 
-def test_assessment_has_the_durations_of_the_lights(past: Past) -> None:
+def test_assessment_has_the_durations_of_the_lights(past: ClosedIncident) -> None:
     report = past.post_processor.assess(past.incident, past.records.tracks_of(past.incident))
     named = with_people(report, {"FF-01": ["Mia"]})
     assert [unit.people for unit in named.units] == [("Mia",), ()]
     assert all(0.0 <= (unit.floor_right or 0.0) <= 1.0 for unit in report.units)
 
 
-def test_exporter_uses_the_smoothed_trail(past: Past) -> None:
+def test_exporter_uses_the_smoothed_trail(past: ClosedIncident) -> None:
     smoothed = past.post_processor.smoothed(past.incident).tracks
     shown = [*incident_tracks(past.records, past.roster, past.incident).tracks]
     chosen = [*incident_tracks(past.records, past.roster, past.incident, smoothed).tracks]
@@ -412,7 +416,7 @@ def test_exporter_uses_the_smoothed_trail(past: Past) -> None:
     ]
 
 
-def test_assessment_compares_shown_places_with_the_smoothed_trail(past: Past) -> None:
+def test_assessment_compares_shown_places_with_the_smoothed_trail(past: ClosedIncident) -> None:
     report = past.post_processor.assess(past.incident, past.records.tracks_of(past.incident))
     one, two = report.units
     assert one.against_smoothed is not None

@@ -12,7 +12,7 @@ from edge.activity.body_posture import BodyPostureEstimator
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
 from shared.messages import BodyPosture, Mobility
-from tests.rig.body_postures import POSTURES, Act, PosedBody, posed_body
+from tests.rig.body_postures import POSTURES, PosedBody, PostureStay, posed_body
 from tests.rig.posture_confusion import confusion, random_body, share
 
 ALL = ("chest", "thigh", "shank")
@@ -86,7 +86,7 @@ def test_confident_posture_is_correct(bodies: Sequence[PosedBody]) -> None:
 
 
 def test_no_posture_is_stated_before_the_first_walk() -> None:
-    body = posed_body([Act(BodyPosture.SUPINE, 20.0)], np.random.default_rng(1))
+    body = posed_body([PostureStay(BodyPosture.SUPINE, 20.0)], np.random.default_rng(1))
     estimator = pushed(body)
     assert estimator.posture(int(body.t_ns[-1])) == (BodyPosture.UNKNOWN, 0.0)
 
@@ -94,7 +94,7 @@ def test_no_posture_is_stated_before_the_first_walk() -> None:
 def test_given_mounting_gives_a_posture_before_the_first_walk() -> None:
     rng = np.random.default_rng(2)
     turned = Rotation.random(random_state=rng)
-    body = posed_body([Act(BodyPosture.SUPINE, 20.0)], rng, mounts={"chest": turned})
+    body = posed_body([PostureStay(BodyPosture.SUPINE, 20.0)], rng, mounts={"chest": turned})
     estimator = BodyPostureEstimator({"chest": UP @ turned.as_matrix()})
     push(estimator, body, ("chest",))
     posture, confidence = estimator.posture(int(body.t_ns[-1]))
@@ -105,7 +105,10 @@ def test_given_mounting_gives_a_posture_before_the_first_walk() -> None:
 def test_wrong_mounting_is_corrected_by_walking() -> None:
     rng = np.random.default_rng(3)
     turned = Rotation.random(random_state=rng)
-    walk = [Act(BodyPosture.STANDING, 30.0, walks=True), Act(BodyPosture.LEFT_SIDE, 15.0)]
+    walk = [
+        PostureStay(BodyPosture.STANDING, 30.0, walks=True),
+        PostureStay(BodyPosture.LEFT_SIDE, 15.0),
+    ]
     body = posed_body(walk, rng, mounts={"chest": turned})
     wrong = Rotation.from_euler("Y", 90.0, degrees=True).as_matrix() @ UP @ turned.as_matrix()
     estimator = BodyPostureEstimator({"chest": wrong})
@@ -115,16 +118,19 @@ def test_wrong_mounting_is_corrected_by_walking() -> None:
 
 def test_change_is_reported_within_three_seconds() -> None:
     acts = [
-        Act(BodyPosture.STANDING, 15.0, walks=True),
-        Act(BodyPosture.STANDING, 10.0),
-        Act(BodyPosture.SUPINE, 3.5),
+        PostureStay(BodyPosture.STANDING, 15.0, walks=True),
+        PostureStay(BodyPosture.STANDING, 10.0),
+        PostureStay(BodyPosture.SUPINE, 3.5),
     ]
     body = posed_body(acts, np.random.default_rng(4))
     assert pushed(body).posture(int(body.t_ns[-1]))[0] is BodyPosture.SUPINE
 
 
 def test_silent_sensor_is_left_out_and_no_sensor_gives_no_posture() -> None:
-    acts = [Act(BodyPosture.STANDING, 15.0, walks=True), Act(BodyPosture.SITTING, 20.0)]
+    acts = [
+        PostureStay(BodyPosture.STANDING, 15.0, walks=True),
+        PostureStay(BodyPosture.SITTING, 20.0),
+    ]
     body = posed_body(acts, np.random.default_rng(5))
     estimator = BodyPostureEstimator()
     half = len(body.t_ns) // 2 + 500
@@ -148,7 +154,9 @@ def test_any_batching_gives_the_same() -> None:
 
 
 def test_foot_and_missing_samples_give_no_posture() -> None:
-    body = posed_body([Act(BodyPosture.STANDING, 12.0, walks=True)], np.random.default_rng(6))
+    body = posed_body(
+        [PostureStay(BodyPosture.STANDING, 12.0, walks=True)], np.random.default_rng(6)
+    )
     estimator = BodyPostureEstimator()
     estimator.push("foot", body.samples["shank"])
     missed = ImuBatch(
@@ -160,7 +168,10 @@ def test_foot_and_missing_samples_give_no_posture() -> None:
 
 
 def test_trunk_distinguishes_walk_turn_and_rest() -> None:
-    acts = [Act(BodyPosture.STANDING, 20.0, walks=True), Act(BodyPosture.STANDING, 8.0)]
+    acts = [
+        PostureStay(BodyPosture.STANDING, 20.0, walks=True),
+        PostureStay(BodyPosture.STANDING, 8.0),
+    ]
     body = posed_body(acts, np.random.default_rng(7))
     estimator = BodyPostureEstimator()
     push(estimator, _part(body, 0, 1950), ("chest",))

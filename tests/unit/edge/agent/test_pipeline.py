@@ -25,7 +25,7 @@ from shared.messages import (
     UnitDescription,
     UnitEvent,
 )
-from tests.rig.body_postures import Act, posed_body
+from tests.rig.body_postures import PostureStay, posed_body
 from tests.rig.straight_tracker import RATE_HZ, StraightAhead, of, pipeline, steps, walk
 
 
@@ -142,7 +142,10 @@ def test_clock_that_jumps_a_day_in_either_direction_stops_nothing():
 
 
 def test_trunk_that_lies_down_is_in_the_status_with_its_confidence():
-    acts = [Act(BodyPosture.STANDING, 15.0, walks=True), Act(BodyPosture.PRONE, 10.0)]
+    acts = [
+        PostureStay(BodyPosture.STANDING, 15.0, walks=True),
+        PostureStay(BodyPosture.PRONE, 10.0),
+    ]
     chest = posed_body(acts, np.random.default_rng(1)).samples["chest"]
     sensor = FittedSensor(SensorDescription("fake", 100.0))
     pipe = TrackerPipeline(

@@ -18,7 +18,7 @@ def batch(sensor: str, t_s: float) -> SensorBatch:
     return SensorBatch(ImuBatch(t_ns, np.zeros((5, 3)), np.zeros((5, 3))), sensor=sensor)
 
 
-class Wearing:
+class TwoSensors:
     """Two sensors, and what their presence says of them."""
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class Wearing:
 
 
 def test_two_sensors_on_one_clock_are_left_as_they_are() -> None:
-    wearing = Wearing()
+    wearing = TwoSensors()
     wearing.wear(0.0, 5.0)
     assert wearing.news == []
     assert (
@@ -53,7 +53,7 @@ def test_two_sensors_on_one_clock_are_left_as_they_are() -> None:
 
 
 def test_a_sensor_that_falls_silent_is_gone_and_comes_back() -> None:
-    wearing = Wearing()
+    wearing = TwoSensors()
     wearing.wear(0.0, 3.0)
     assert wearing.presence.leading == "foot"
     wearing.wear(3.0, 6.0, only="back")
@@ -65,14 +65,14 @@ def test_a_sensor_that_falls_silent_is_gone_and_comes_back() -> None:
 
 
 def test_a_sensor_that_never_came_is_gone() -> None:
-    wearing = Wearing()
+    wearing = TwoSensors()
     wearing.wear(0.0, 3.0, only="back")
     assert wearing.news == ["foot has given no samples for 2 s; back goes on"]
 
 
 @pytest.mark.parametrize("ahead_s", [30.0, -30.0, 1.5])
 def test_a_clock_apart_is_laid_on_the_others(ahead_s: float) -> None:
-    wearing = Wearing()
+    wearing = TwoSensors()
     wearing.wear(0.0, 5.0, back_ahead_s=ahead_s)
     (reported,) = wearing.news
     word = "ahead" if ahead_s > 0.0 else "behind"
@@ -87,7 +87,7 @@ def test_a_clock_apart_is_laid_on_the_others(ahead_s: float) -> None:
 
 def test_a_backlog_that_is_caught_up_moves_no_clock() -> None:
     """The radio of one held its samples up for 5 s; they come faster than the other's then."""
-    wearing = Wearing()
+    wearing = TwoSensors()
     wearing.wear(0.0, 3.0)
     wearing.wear(3.0, 8.0, only="back")
     late = np.arange(3.0, 8.0, PERIOD_S)

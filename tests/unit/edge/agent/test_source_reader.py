@@ -43,7 +43,7 @@ class Scripted:
         self.closed = True
 
 
-class Reported:
+class FinishedSource:
     """Something beside a source, that has said all it says."""
 
     def __init__(self, *samples: BatterySample) -> None:
@@ -145,7 +145,7 @@ LOW = BatterySample(1_000_000, 0.1)
 
 @pytest.mark.parametrize(("live", "t_ns"), [(True, LOW.t_ns), (False, 5 * NS_PER_S)])
 def test_what_is_read_beside_a_source_comes_with_its_next_batch(live: bool, t_ns: int):
-    source, beside = Scripted(lambda: iter([batch(5.0)]), live=live), Reported(LOW)
+    source, beside = Scripted(lambda: iter([batch(5.0)]), live=live), FinishedSource(LOW)
     reader = SourceReader(source, SystemClock(), None, (beside,))
     (timed,) = everything(reader)
     assert timed.batch.others == (BatterySample(t_ns, LOW.level),)
@@ -157,7 +157,7 @@ def test_what_is_read_beside_a_source_comes_with_its_next_batch(live: bool, t_ns
 def test_beside_a_recording_it_has_the_recordings_time_also_where_the_sensor_was_gone():
     press = ButtonPress(5 * NS_PER_S, "mayday")
     source = Scripted(lambda: iter([SensorBatch(batch(0.0).imu.part(slice(0)), (press,))]))
-    (timed,) = everything(SourceReader(source, SystemClock(), None, (Reported(LOW),)))
+    (timed,) = everything(SourceReader(source, SystemClock(), None, (FinishedSource(LOW),)))
     assert timed.batch.others == (press, BatterySample(5 * NS_PER_S, LOW.level))
 
 
@@ -169,7 +169,7 @@ def test_while_a_live_source_gives_nothing_what_is_beside_it_goes_alone(live: bo
         release.wait()
         yield from ()
 
-    reader = SourceReader(Scripted(script, live=live), clock, None, (Reported(LOW),))
+    reader = SourceReader(Scripted(script, live=live), clock, None, (FinishedSource(LOW),))
     reader.start()
     assert reader.take(0.01) is None, "the next batch may be about to come"
     clock.advance(2.0)

@@ -98,7 +98,7 @@ def unit() -> Iterator[Unit]:
     unit.listener.close()
 
 
-class OneLook(Event):
+class StopAfterOneRound(Event):
     """To be stopped after one look."""
 
     def is_set(self) -> bool:
@@ -125,9 +125,9 @@ def test_messages_of_other_units_are_not_received(unit: Unit) -> None:
 
 def test_a_run_begins_when_its_sensor_is_known(unit: Unit) -> None:
     unit.says(raw(1))
-    assert unit.listener.next_boot(OneLook()) is None
+    assert unit.listener.next_boot(StopAfterOneRound()) is None
     unit.describes(boot_id=8)
-    assert unit.listener.next_boot(OneLook()) is None, "the sensor of another run"
+    assert unit.listener.next_boot(StopAfterOneRound()) is None, "the sensor of another run"
     unit.describes()
     assert unit.listener.next_boot(Event()) == (7, {"": SENSOR})
     assert unit.taken() == [1], "waiting took nothing"
@@ -135,14 +135,14 @@ def test_a_run_begins_when_its_sensor_is_known(unit: Unit) -> None:
 
 def test_a_description_alone_is_no_run(unit: Unit) -> None:
     unit.describes()
-    assert unit.listener.next_boot(OneLook()) is None
+    assert unit.listener.next_boot(StopAfterOneRound()) is None
 
 
 def test_for_a_unit_that_tracks_itself_nothing_is_tracked(unit: Unit) -> None:
     unit.describes(tracker="eskf")
     unit.says(raw(1))
     source = BusSource(U)
-    assert not source.follow(unit.listener, OneLook())
+    assert not source.follow(unit.listener, StopAfterOneRound())
 
 
 def test_unreadable_message_costs_nothing_else(unit: Unit) -> None:
@@ -200,7 +200,7 @@ def test_a_bus_that_cannot_be_opened_is_tried_again(unit: Unit) -> None:
             raise refusals.pop()
         return unit.router.attach_station()
 
-    assert not RawStreamListener(U, open_bus).open(OneLook())
+    assert not RawStreamListener(U, open_bus).open(StopAfterOneRound())
     listener = RawStreamListener(U, open_bus)
     stop.wait = lambda timeout=None: False  # type: ignore[method-assign]  # nobody waits here
     assert listener.open(stop)

@@ -312,7 +312,7 @@ def test_unregistered_unit_raises_one_alarm_and_no_other() -> None:
 
 
 @dataclass(frozen=True)
-class Asked:
+class CountingRule:
     """A rule without state: it appends the time of each call to a list."""
 
     asked: list[int]
@@ -332,7 +332,7 @@ class Asked:
 def test_frequent_inputs_call_only_the_rules_triggered_by_them(
     triggered_by: tuple[type[Message], ...], times: int
 ) -> None:
-    rule = Asked([], triggered_by=triggered_by)
+    rule = CountingRule([], triggered_by=triggered_by)
     script = Script(StationPipeline((rule,), FUSERS[0]))
     script.register(U)
     rule.asked.clear()

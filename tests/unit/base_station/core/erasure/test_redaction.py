@@ -194,7 +194,7 @@ def start(unit_id: str) -> SetStart:
 
 
 @pytest.mark.parametrize(
-    ("said_ns", "action", "left"),
+    ("logged_ns", "action", "left"),
     [
         (150, start("anna"), None),
         (150, start("bert"), start("bert")),
@@ -216,7 +216,7 @@ def start(unit_id: str) -> SetStart:
     ],
 )
 def test_reported_places_of_the_erased_person_are_removed_and_others_stay(
-    said_ns: int, action: Action, left: Action | None
+    logged_ns: int, action: Action, left: Action | None
 ) -> None:
     redact = Redactor(
         Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), CaptureClocks()
@@ -224,14 +224,14 @@ def test_reported_places_of_the_erased_person_are_removed_and_others_stay(
 
     def record(done: Action) -> tuple[int, str, bytes]:
         message = OperatorAction(HEADER, "a-1", "chief", done)
-        return said_ns, OPERATOR.key(STATION_ID), encode(message)
+        return logged_ns, OPERATOR.key(STATION_ID), encode(message)
 
     assert redact(record(action)) == ([] if left is None else [record(left)])
 
 
-def apart(said_ns: int, what: str) -> DoneApart:
+def apart(logged_ns: int, what: str) -> DoneApart:
     """Separate actions by an operator with the name of the erased person: the operator stays."""
-    return DoneApart("ada", said_ns, "Ada", what)
+    return DoneApart("ada", logged_ns, "Ada", what)
 
 
 PERSON = Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1")
@@ -293,7 +293,7 @@ def test_what_consoles_were_shown_goes_where_they_showed_who_is_forgotten(
 
 
 @pytest.mark.parametrize(
-    ("erasure", "told_ns", "said_ns", "what", "left"),
+    ("erasure", "record_ns", "logged_ns", "what", "left"),
     [
         (PERSON, 300, 150, "SetPin p, anna, 3.0, 4.0", ERASED_TEXT),
         (PERSON, 300, 250, "SetPin p, anna, 150, 3.0, 4.0", ERASED_TEXT),
@@ -314,11 +314,11 @@ def test_what_consoles_were_shown_goes_where_they_showed_who_is_forgotten(
     ],
 )
 def test_separate_actions_keep_nothing_of_the_forgotten_person(
-    erasure: Erasure, told_ns: int, said_ns: int, what: str, left: str
+    erasure: Erasure, record_ns: int, logged_ns: int, what: str, left: str
 ) -> None:
-    action = OperatorAction(HEADER, "a-1", STATION_ID, apart(said_ns, what))
-    record = told_ns, OPERATOR.key(STATION_ID), encode(action)
+    action = OperatorAction(HEADER, "a-1", STATION_ID, apart(logged_ns, what))
+    record = record_ns, OPERATOR.key(STATION_ID), encode(action)
     ((_, _, payload),) = Redactor(erasure, CaptureClocks())(record)
     found = decode(OPERATOR, payload)
     assert isinstance(found, OperatorAction)
-    assert found.action == apart(said_ns, left)
+    assert found.action == apart(logged_ns, left)

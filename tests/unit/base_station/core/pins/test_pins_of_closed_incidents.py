@@ -31,7 +31,7 @@ from shared.messages.station import (
 )
 from tests.rig.round_walk import Walk, truth
 from tests.rig.station_script import START_NS, Script
-from tests.rig.watched_pipeline import Watched, apart_m
+from tests.rig.watched_pipeline import WatchedScript, apart_m
 
 A, B = "FF-01", "FF-02"
 WALKED_S = 70
@@ -41,13 +41,13 @@ PLAN = b"""{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[
 {"type":"Polygon","coordinates":[[[-9,-60],[90,-60],[90,60],[-9,60],[-9,-60]]]}}]}"""
 
 
-class Story(Walk):
+class PinnedIncident(Walk):
     """Two units walk a round; they were pinned, met each other, and one passed a beacon."""
 
-    script: Watched
+    script: WatchedScript
 
     def __init__(self) -> None:
-        super().__init__(A, B, turn_rad=0.3, script=Watched())
+        super().__init__(A, B, turn_rad=0.3, script=WatchedScript())
         for unit_id in (A, B):
             self.start(unit_id)
         self.script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
@@ -70,7 +70,7 @@ class Story(Walk):
         return SetPin(pin_id, unit_id, t_ns, *truth(second - 4.0), 0.5, floor, None, 0.0, "")
 
 
-Change = Callable[[Story], list[Action]]
+Change = Callable[[PinnedIncident], list[Action]]
 CHANGES: dict[str, Change] = {
     "a pin is set": lambda s: [s.place_pin("new", A, 30.0, None)],
     "a pin with a floor is set": lambda s: [s.place_pin("new", A, 30.0, 3)],
@@ -102,46 +102,46 @@ CHANGES: dict[str, Change] = {
 }
 
 
-def sends_positions(story: Story) -> None:
-    story.go(5)
+def sends_positions(incident: PinnedIncident) -> None:
+    incident.go(5)
 
 
-def is_silent(story: Story) -> None:
-    story.script.away.add(A)
-    story.go(40)
+def is_silent(incident: PinnedIncident) -> None:
+    incident.script.away.add(A)
+    incident.go(40)
 
 
-def is_backfilled(story: Story) -> None:
+def is_backfilled(incident: PinnedIncident) -> None:
     """Half of the missed messages have come."""
-    story.script.away.add(A)
-    story.go(30)
-    story.script.away.clear()
-    story.go(2)
-    story.script.backfill(15)
+    incident.script.away.add(A)
+    incident.go(30)
+    incident.script.away.clear()
+    incident.go(2)
+    incident.script.backfill(15)
 
 
 CIRCUMSTANCES = (sends_positions, is_silent, is_backfilled)
 
 
 @pytest.fixture(scope="module", params=CIRCUMSTANCES, ids=lambda one: one.__name__)
-def walked(request: pytest.FixtureRequest) -> Story:
-    story = Story()
-    request.param(story)
-    return story
+def walked(request: pytest.FixtureRequest) -> PinnedIncident:
+    incident = PinnedIncident()
+    request.param(incident)
+    return incident
 
 
-def changed_story(change: str, walked: Story) -> Story:
-    story = copy(walked)
-    story.script = walked.script.restarted()
-    for action in CHANGES[change](story):
-        outputs = story.script.act(action)
+def changed_story(change: str, walked: PinnedIncident) -> PinnedIncident:
+    incident = copy(walked)
+    incident.script = walked.script.restarted()
+    for action in CHANGES[change](incident):
+        outputs = incident.script.act(action)
         assert not any(isinstance(one, Refused) for one in outputs), outputs
-    return story
+    return incident
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
-def test_markers_trails_and_consoles_follow(change: str, walked: Story) -> None:
+def test_markers_trails_and_consoles_follow(change: str, walked: PinnedIncident) -> None:
     script = changed_story(change, walked).script
     shown = markers(script)
     assert shown == markers(looked_at_again(script)), "at once, whoever is silent too"
@@ -168,7 +168,7 @@ def markers(script: Script) -> dict[str, tuple[object, ...]]:
     }
 
 
-def looked_at_again(script: Watched) -> Script:
+def looked_at_again(script: WatchedScript) -> Script:
     """State of a station that starts from the checkpoint of this one: the same anchor changes only
     the places.
     """
@@ -189,9 +189,9 @@ def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
     return worst_m
 
 
-def both_gone_upstairs() -> Watched:
+def both_gone_upstairs() -> WatchedScript:
     """Both climb three floors side by side, in a minute."""
-    script = Watched()
+    script = WatchedScript()
     script.register(A, B)
     script.act(OpenIncident("i1", "Mill Lane"))
     for second in range(60):
@@ -213,14 +213,14 @@ def test_floor_set_for_one_unit_holds_for_a_silent_one_there() -> None:
     assert (before, after) == ({A: 3, B: 3}, {A: 2, B: 2})
 
 
-def shown_floor(script: Watched, unit_id: str) -> int | None:
+def shown_floor(script: WatchedScript, unit_id: str) -> int | None:
     position = script.console.units[unit_id].position
     return None if position is None else position.floor
 
 
 def test_waiting_pin_is_published_as_the_path_comes() -> None:
     """Used, contradicted, or of a time before the path."""
-    script = Watched()
+    script = WatchedScript()
     walk = Walk(A, B, script=script)
     walk.start(A)
     walk.go(20, silent=(B,))
@@ -240,7 +240,7 @@ def test_waiting_pin_is_published_as_the_path_comes() -> None:
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
 def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
     """The heading of the unit was unknown, and its start on the first floor."""
-    script = Watched()
+    script = WatchedScript()
     walk = Walk(unit_id, turn_rad=0.7, script=script)
     for _ in range(300):
         walk.go(1)
@@ -259,7 +259,7 @@ def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
 
 
 def test_erased_person_leaves_no_place() -> None:
-    script = Watched()
+    script = WatchedScript()
     walk = Walk(A, script=script)
     walk.start(A)
     walk.go(60)
@@ -284,7 +284,7 @@ def test_erased_person_leaves_no_place() -> None:
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
 def test_start_may_be_anywhere_and_be_removed(unit_id: str) -> None:
     """The path without the pins has the same trail."""
-    script = Watched()
+    script = WatchedScript()
     walk = Walk(unit_id, turn_rad=0.7, script=script)
     walk.go(100)
     if unit_id == A:
@@ -303,7 +303,7 @@ def test_start_may_be_anywhere_and_be_removed(unit_id: str) -> None:
 
 def test_backfilled_path_of_before_can_be_pinned() -> None:
     """The unit set out beyond the radio's range; the commander had reported its place."""
-    script = Watched()
+    script = WatchedScript()
     walk = Walk(A, script=script)
     script.away.add(A)
     for second in range(100):
@@ -336,7 +336,7 @@ def test_corrected_anchor_moves_units_placed_by_satellites() -> None:
     stays.
     """
     true, wrong = Anchor(52.0, 4.0, 0.0, 0.0), Anchor(52.001, 4.0005, 0.0, 0.3)
-    script = Watched()
+    script = WatchedScript()
     script.register(A, B)
     script.act(OpenIncident("i1", "Mill Lane"))
     script.act(SetStart(B, 0.0, 5.0, 0.0, 0.0, 0.5, 0.05))
@@ -361,7 +361,7 @@ def test_corrected_anchor_moves_units_placed_by_satellites() -> None:
         assert (trail[0].north_m, trail[-1].north_m) == pytest.approx((0.0, 399.0), abs=5.0)
 
 
-def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> float:
+def distance_m(script: WatchedScript, unit_id: str, place_m: tuple[float, float]) -> float:
     position = script.console.units[unit_id].position
     assert position is not None
     return math.dist((position.north_m, position.east_m), place_m)
@@ -370,19 +370,19 @@ def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> f
 @pytest.mark.slow
 def test_plan_with_other_storeys_renumbers_trails() -> None:
     """Trails of units without pins too, received or silent; pinned trails as without pins."""
-    story = Story()
-    story.script.act(RemovePin("met"))
-    story.script.act(RemovePin("of B"))
-    story.script.away.add(B)
-    story.go(5)
-    before = story.script.pipeline.state.units[B].trails.shown[:]
+    incident = PinnedIncident()
+    incident.script.act(RemovePin("met"))
+    incident.script.act(RemovePin("of B"))
+    incident.script.away.add(B)
+    incident.go(5)
+    before = incident.script.pipeline.state.units[B].trails.shown[:]
     assert before[-1].floor == 0
-    story.script.act(SetPlan(PLAN))
-    story.script.wait(8)
-    units = story.script.pipeline.state.units
+    incident.script.act(SetPlan(PLAN))
+    incident.script.wait(8)
+    units = incident.script.pipeline.state.units
     assert [step.floor for step in units[B].trails.shown] == [2] * len(before)
     assert [msgspec.structs.replace(step, floor=2) for step in before] == units[B].trails.shown
-    assert {point.floor for point in story.script.console.trails[B]} == {2}
+    assert {point.floor for point in incident.script.console.trails[B]} == {2}
     plain = units[A].trails.unpinned
     assert plain is not None
     assert {step.floor for step in (*plain, *units[A].trails.shown)} == {2}

@@ -21,7 +21,7 @@ BOMB = (
 )
 
 
-class Taken:
+class RecordingInbox:
     """An inbox, and its deliveries."""
 
     def __init__(self, within_m: float = 3000.0) -> None:
@@ -96,7 +96,7 @@ def test_deleted_marker_and_cancelled_emergency_are_removed() -> None:
 def test_impossible_event_is_refused(raw: bytes) -> None:
     with pytest.raises(NoMarkerError):
         read_event("county", raw)
-    taken = Taken()
+    taken = RecordingInbox()
     taken.push(raw + cot_event("good"))
     assert set(taken.markers) == {"county/good"}
 
@@ -120,7 +120,7 @@ def test_endless_rubbish_takes_bounded_memory() -> None:
 
 
 def test_ten_thousand_markers_are_bounded() -> None:
-    taken = Taken()
+    taken = RecordingInbox()
     taken.push(b"".join(cot_event(f"m{number}") for number in range(10_000)))
     assert len(taken.markers) == WAITING_MAX
     assert taken.inbox.refused == 10_000 - WAITING_MAX
@@ -129,7 +129,7 @@ def test_ten_thousand_markers_are_bounded() -> None:
 
 
 def test_newest_of_many_positions_in_a_second_is_delivered() -> None:
-    taken = Taken()
+    taken = RecordingInbox()
     taken.push(cot_event("p"), 0)
     taken.push(cot_event("p", lat="52.501"), NS_PER_S // 2)
     taken.push(cot_event("p", lat="52.502"), NS_PER_S // 2)
@@ -139,7 +139,7 @@ def test_newest_of_many_positions_in_a_second_is_delivered() -> None:
 
 
 def test_own_people_and_distant_ones_are_left_out() -> None:
-    taken = Taken(within_m=500.0)
+    taken = RecordingInbox(within_m=500.0)
     taken.push(cot_event("muster.FF-01") + cot_event("far", lat="52.51") + cot_event("near"))
     assert set(taken.markers) == {"county/near"}
     taken.inbox.push(cot_event("other"), None, NOW_NS)
@@ -148,7 +148,7 @@ def test_own_people_and_distant_ones_are_left_out() -> None:
 
 
 def test_clock_ahead_makes_nobody_fresher() -> None:
-    taken = Taken()
+    taken = RecordingInbox()
     taken.push(cot_event("p", time="2023-11-14T23:13:20.000Z", stale="2023-11-14T23:14:20Z"))
     marker = taken.markers["county/p"]
     assert marker.t_ns == NOW_NS
@@ -156,7 +156,7 @@ def test_clock_ahead_makes_nobody_fresher() -> None:
 
 
 def test_expired_person_is_removed() -> None:
-    taken = Taken()
+    taken = RecordingInbox()
     gone: Callable[[str], bytes] = lambda uid: cot_event(  # noqa: E731  # one line a use
         "x", kind="t-x-d-d", detail=f'<link uid="{uid}"/>'
     )

@@ -13,9 +13,17 @@ from edge.sources.gnss.gpsd_reports import report_of
 from edge.sources.gnss.interface import Report
 from shared.clock import NS_PER_S
 from shared.errors import WireError
-from tests.rig.gps_receiver import DEVICE, NAN, Reported, gpsd_devices, gpsd_report, iso, json_line
+from tests.rig.gps_receiver import (
+    DEVICE,
+    NAN,
+    ReportedFix,
+    gpsd_devices,
+    gpsd_report,
+    iso,
+    json_line,
+)
 
-HERE = Reported()
+HERE = ReportedFix()
 S = NS_PER_S
 OTHER = "/dev/ttyUSB7"
 

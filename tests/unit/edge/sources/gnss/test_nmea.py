@@ -14,9 +14,9 @@ from edge.sources.gnss.nmea import Nmea
 from edge.sources.gnss.nmea_sentences import sentence_of
 from shared.clock import NS_PER_S
 from shared.errors import WireError
-from tests.rig.gps_receiver import NAN, Reported, burst, gga, gsa, gst, rmc, sentence
+from tests.rig.gps_receiver import NAN, ReportedFix, burst, gga, gsa, gst, rmc, sentence
 
-HERE = Reported()
+HERE = ReportedFix()
 WITH_GST = replace(HERE, std_m=1.3, vertical_std_m=2.2)
 S = NS_PER_S
 
@@ -36,7 +36,7 @@ def fix(*values: bytes) -> GpsSample:
     return report.fix
 
 
-def seconds(count: int, reported: Reported = HERE, step_s: float = 1.0) -> list[Reported]:
+def seconds(count: int, reported: ReportedFix = HERE, step_s: float = 1.0) -> list[ReportedFix]:
     return [replace(reported, of_day_s=reported.of_day_s + k * step_s) for k in range(count)]
 
 

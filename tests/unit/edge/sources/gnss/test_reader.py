@@ -10,10 +10,10 @@ import pytest
 from edge.sources.gnss.nmea import Nmea
 from edge.sources.gnss.reader import GnssReader
 from shared.clock import NS_PER_S, ManualClock
-from tests.rig.gps_receiver import Reported, gga, rmc, sentence
+from tests.rig.gps_receiver import ReportedFix, gga, rmc, sentence
 
 BAD = b"$GNRMC,0927"
-STATED = Reported()
+STATED = ReportedFix()
 OF_NO_USE = sentence("GNVTG,,T,,M,0.02,N,0.04,K,A")
 
 

@@ -77,7 +77,7 @@ PASSWORD = "correct horse battery"
 ORIGIN = "http://station"
 
 
-class DeskDrive:
+class SteppedEngine:
     """Gate, live source and projection in one, stepped by whoever calls."""
 
     def __init__(self, clock: Clock, projection: SqlProjection, roster: Roster, hub: Hub) -> None:
@@ -164,7 +164,7 @@ def no_replays(_incident: IncidentRow, _speed: float, _hub: Hub) -> ReplayPlayer
     raise UserError("this station has no log")
 
 
-def nobody_answers(_unit_id: str, _question: str) -> None:
+def query_without_answer(_unit_id: str, _question: str) -> None:
     return None
 
 
@@ -177,7 +177,7 @@ def _routes_of(app: FastAPI) -> list[BaseRoute]:
     return _routes
 
 
-class DeskStation:
+class InProcessStation:
     """The API on a fresh data folder with one user of each role, each named like the role."""
 
     def __init__(self, folder: Path, clock: Clock) -> None:
@@ -189,14 +189,14 @@ class DeskStation:
         self.hub = Hub()
         self.router = MemoryRouter()
         roster = Roster(self.store, clock)
-        self.drive = DeskDrive(clock, self.projection, roster, self.hub)
+        self.drive = SteppedEngine(clock, self.projection, roster, self.hub)
         forgetter = ErasureService(
             ClosedLog(folder / "log"),
             self.store,
             Checkpoints(folder / "checkpoints"),
             Records(self.store, clock),
             clock,
-            TransferQueue(nobody_answers, folder / "recordings", clock),
+            TransferQueue(query_without_answer, folder / "recordings", clock),
             self.drive.submit,
         )
         self.forgettings = ErasureQueue(

@@ -100,7 +100,7 @@ class ReportingStation:
         return self._work.stdout.readline()
 
 
-class Roof:
+class DepartmentNetwork:
     """The department is in one network, and each station behind a link of its own."""
 
     def __init__(
