@@ -93,7 +93,7 @@ class MemoryRouter:
                     continue
                 if intersects(entry.expression, key):
                     self._defer(entry.gate, key, payload)
-        self._settle()
+        self._deliver_unless_pumped()
 
     def has_subscriber(self, sender: MemoryBus, key: str) -> bool:
         with self._lock:
@@ -118,14 +118,14 @@ class MemoryRouter:
         with self._lock:
             self._declarations.append(entry)
             self._notify_watchers()
-        self._settle()
+        self._deliver_unless_pumped()
 
     def withdraw(self, entry: Declaration) -> None:
         with self._lock:
             if entry in self._declarations:
                 self._declarations.remove(entry)
             self._notify_watchers()
-        self._settle()
+        self._deliver_unless_pumped()
 
     def withdraw_all(self, owner: MemoryBus) -> None:
         for entry in [entry for entry in self._declarations if entry.owner is owner]:
@@ -135,7 +135,7 @@ class MemoryRouter:
     def links_changed(self) -> None:
         with self._lock:
             self._notify_watchers()
-        self._settle()
+        self._deliver_unless_pumped()
 
     def _reached_from(self, endpoint: MemoryBus, role: EndpointRole) -> list[Declaration]:
         return [
@@ -161,7 +161,7 @@ class MemoryRouter:
     def _defer(self, gate: HandlerGate, *arguments: object) -> None:
         self._deliveries.append(lambda: gate(*arguments))
 
-    def _settle(self) -> None:
+    def _deliver_unless_pumped(self) -> None:
         if not self._pumped:
             self.pump()
 

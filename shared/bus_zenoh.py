@@ -83,7 +83,9 @@ class ZenohBus:
         subscriber = self._session.declare_subscriber(
             key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING)
         )
-        self._start_thread("bus-samples", partial(_hand_over, subscriber, partial(_message, gate)))
+        self._start_thread(
+            "bus-samples", partial(_deliver_samples, subscriber, partial(_message, gate))
+        )
         return _Declared(gate, subscriber)
 
     def declare_alive(self, key: str) -> Subscription:
@@ -97,7 +99,9 @@ class ZenohBus:
         subscriber = self._session.liveliness().declare_subscriber(
             key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING), history=True
         )
-        self._start_thread("bus-tokens", partial(_hand_over, subscriber, partial(_token, gate)))
+        self._start_thread(
+            "bus-tokens", partial(_deliver_samples, subscriber, partial(_token, gate))
+        )
         return _Declared(gate, subscriber)
 
     def serve(self, key_expression: str, handler: QueryHandler) -> Subscription:
@@ -140,7 +144,7 @@ class ZenohBus:
             timeout=timeout_s,
             payload=payload,
         )
-        self._start_thread("bus-replies", partial(_hand_replies_over, replies, on_reply))
+        self._start_thread("bus-replies", partial(_deliver_replies, replies, on_reply))
 
     def is_linked(self) -> bool:
         if self._session.is_closed():
@@ -214,7 +218,7 @@ def _token(gate: HandlerGate, sample: zenoh.Sample) -> None:
     gate(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
 
 
-def _hand_over(
+def _deliver_samples(
     subscriber: zenoh.Subscriber[_Samples], deliver: Callable[[zenoh.Sample], None]
 ) -> None:
     """Until the subscription ends.  The link's own thread would have to wait for the interpreter
@@ -249,7 +253,7 @@ def _answer(queryable: zenoh.Queryable[_Queries], gate: HandlerGate) -> None:
                 logger.debug("an answer under %s does not get away: %s", key, error)
 
 
-def _hand_replies_over(replies: _Replies, on_reply: ReplyHandler) -> None:
+def _deliver_replies(replies: _Replies, on_reply: ReplyHandler) -> None:
     """Until no more come; in a thread of its own for the same reason: live data comes over the
     same link, behind the replies.
     """

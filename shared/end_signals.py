@@ -18,7 +18,7 @@ def end_requested() -> Event:
     stop, received = Event(), SimpleQueue[int]()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, _: received.put(number))
-    Thread(target=_pass_on, args=(received, stop), name="end-signals", daemon=True).start()
+    Thread(target=_forward_signal, args=(received, stop), name="end-signals", daemon=True).start()
     return stop
 
 
@@ -34,6 +34,6 @@ def sigterm_as_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _pass_on(received: SimpleQueue[int], stop: Event) -> None:
+def _forward_signal(received: SimpleQueue[int], stop: Event) -> None:
     received.get()
     stop.set()

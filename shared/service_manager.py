@@ -21,13 +21,13 @@ class ServiceManager:
 
     def ready(self) -> None:
         """Notify that the start is complete."""
-        self._say(b"READY=1")
+        self._notify(b"READY=1")
 
     def working(self) -> None:
         """Reset the watchdog; called once a second by the main thread."""
-        self._say(b"WATCHDOG=1")
+        self._notify(b"WATCHDOG=1")
 
-    def _say(self, what: bytes) -> None:
+    def _notify(self, what: bytes) -> None:
         if not self._address:
             return
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) as notification:

@@ -25,7 +25,7 @@ class Passwords:
 
     def __init__(self, hasher: PasswordHash | None = None) -> None:
         self._hasher = hasher or PasswordHash.recommended()
-        self._worker = ThreadPoolExecutor(_AT_ONCE, "passwords", initializer=_give_way)
+        self._worker = ThreadPoolExecutor(_AT_ONCE, "passwords", initializer=_lower_priority)
         # Checked for unknown names, so that the answer takes as long.
         self._unknown_user_hash = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
@@ -37,13 +37,13 @@ class Passwords:
             raise UserError(f"a password has at most {MAX_PASSWORD} characters")
         return self._worker.submit(self._hasher.hash, password).result()
 
-    def is_right(self, password: str, stored: str | None) -> bool:
+    def is_valid(self, password: str, stored: str | None) -> bool:
         """``stored``: the hash; None: there is no such user, and the answer takes as long."""
         against = self._unknown_user_hash.result() if stored is None else stored
         verified = self._worker.submit(self._hasher.verify, password, against).result()
         return verified and stored is not None
 
 
-def _give_way() -> None:
+def _lower_priority() -> None:
     """Lower the priority of this thread: on Linux each has a niceness of its own."""
     os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

@@ -90,7 +90,7 @@ class Guidance:
             return
         snapshot = station.picture()
         for guide in guides:
-            if not _goes_on(station, snapshot, guide):
+            if not _is_still_needed(station, snapshot, guide):
                 with self._lock:
                     if self._guides.get(guide.rescuer_id) is guide:
                         del self._guides[guide.rescuer_id]
@@ -153,7 +153,7 @@ def _manoeuvre(route: RouteAnswer) -> object:
     return route.known, len(route.legs), climbed, following
 
 
-def _goes_on(station: Services, snapshot: Snapshot, guide: Guide) -> bool:
+def _is_still_needed(station: Services, snapshot: Snapshot, guide: Guide) -> bool:
     """Not so once the alarms are resolved, the incident is closed or another station leads."""
     if station.ha_status is not None and station.ha_status.refusal() is not None:
         return False

@@ -247,7 +247,7 @@ class _Station:
             records=disk.records,
             pki=resources.pki,
             on_people=disk.roster.read_again,
-            on_taken_back=disk.note_taken_back,
+            on_restored_rows=disk.note_restored_rows,
             on_lead=lambda: announce_first_login(
                 disk.accounts,
                 None if disk.store.in_memory else disk.folder.first_login,

@@ -98,7 +98,9 @@ def _issuing(
         endpoints = [require_endpoint(one) for one in connect or ()]
         target = _free_target(name, holder, out, png, qr=qr)
         valid = timedelta(days=days)
-        _hand_over(issue(PkiFolder(data), name, holder, valid, endpoints), target, png, qr=qr)
+        _output_enrolment(
+            issue(PkiFolder(data), name, holder, valid, endpoints), target, png, qr=qr
+        )
 
     return command
 
@@ -250,7 +252,9 @@ def _require_free(path: Path) -> None:
     writable(path)
 
 
-def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, qr: bool) -> None:
+def _output_enrolment(
+    enrolment: Enrolment, target: Path | None, png: Path | None, *, qr: bool
+) -> None:
     from base_station.security.pki.qr import as_text, qr_code, save_png  # noqa: PLC0415
 
     if target is not None:

@@ -107,7 +107,7 @@ class StationStorage:
         except StoreError:  # a hanging disk stops no replay; most is found in the files
             return ()
 
-    def note_taken_back(self, what: str) -> None:
+    def note_restored_rows(self, what: str) -> None:
         """Note that rows which the database had lost with its file are there again."""
         self.store.loss = ""
         self.records.audit(STATION_ID, "TookBackAccounts", what)
@@ -132,11 +132,11 @@ class StationStorage:
         act: Act,
         save_soon: Callable[[], None],
         leads: Callable[[], bool],
-        other_there: Callable[[], bool],
+        has_peer: Callable[[], bool],
         erase_audio: EraseAudio,
     ) -> ErasureQueue:
         """``act`` makes the running station erase its memory, ``save_soon`` makes it save its
-        state, which the erasure has removed.  ``other_there``: the other one of two is reachable.
+        state, which the erasure has removed.  ``has_peer``: the other one of two is reachable.
         ``erase_audio``: as of ``ErasureService``.
         """
 
@@ -158,7 +158,7 @@ class StationStorage:
 
         def mended_first(path: Path, damage: str) -> bool:
             waited[path] += 1
-            if not other_there() or waited[path] > REPAIR_RETENTION:
+            if not has_peer() or waited[path] > REPAIR_RETENTION:
                 return False
             self.check.note_damaged(path, damage)
             return True

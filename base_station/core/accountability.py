@@ -69,7 +69,7 @@ def end(state: StationState, unit: UnitState) -> None:
         unit.duty, unit.off_duty_ns = None, state.t_ns
 
 
-def go_on(state: StationState, unit: UnitState, duty: Duty, before: Duty) -> None:
+def continue_duty(state: StationState, unit: UnitState, duty: Duty, before: Duty) -> None:
     """Work and rest of a duty go on in the next one, which another incident has begun."""
     duty.ready_ns, duty.rest_since_ns = before.ready_ns, before.rest_since_ns
     duty.work_since_ns = before.work_since_ns

@@ -27,7 +27,7 @@ def note(state: StationState, report: NoteDispatch) -> None:
         return
     received_ns = state.t_ns if known is None else known.received_ns
     is_dismissed = known is not None and known.is_dismissed
-    others = _others(state, report.number)
+    others = _without(state, report.number)
     state.dispatches = (*others, Dispatch(report, received_ns, is_dismissed))[-KEPT:]
 
 
@@ -46,7 +46,7 @@ def take(state: StationState, number: str) -> NoteDispatch:
     if opened is not None:
         raise UserError(f"the dispatch {number} has opened the incident {opened.name!r} already")
     report = _required(state, number).report
-    state.dispatches = _others(state, number)
+    state.dispatches = _without(state, number)
     return report
 
 
@@ -71,7 +71,7 @@ def _is_of(incident: Incident, number: str) -> bool:
     return incident.dispatch is not None and incident.dispatch.number == number
 
 
-def _others(state: StationState, number: str) -> tuple[Dispatch, ...]:
+def _without(state: StationState, number: str) -> tuple[Dispatch, ...]:
     return tuple(one for one in state.dispatches if one.report.number != number)
 
 

@@ -59,7 +59,7 @@ def move(state: StationState, unit: UnitState, incident: Incident) -> None:
     _restart(unit)
     accountability.begin(state, unit)
     if before is not None and unit.duty is not None:
-        accountability.go_on(state, unit, unit.duty, before)
+        accountability.continue_duty(state, unit, unit.duty, before)
 
 
 def leave(state: StationState, unit: UnitState) -> None:

@@ -60,7 +60,7 @@ class IncidentSink:
         self._site_id = shown_site_id if incident is None else incident.site_id
         ground = next((one for one in snapshot.sites if one.site_id == self._site_id), None)
         return msgspec.structs.replace(
-            snapshot if ground is None else _on(snapshot, ground),
+            snapshot if ground is None else _with_site(snapshot, ground),
             incident=incident or snapshot.incident,
             incidents=(),
             sites=(),
@@ -86,7 +86,7 @@ class IncidentSink:
         return incident_id in ("", self._incident_id) and any(map(self._is_of, unit_ids))
 
 
-def _on(snapshot: Snapshot, ground: SiteView) -> Snapshot:
+def _with_site(snapshot: Snapshot, ground: SiteView) -> Snapshot:
     plan = None if bytes(ground.plan) == b"null" else ground.plan
     return msgspec.structs.replace(
         snapshot, plan=plan, anchor=ground.anchor, plan_placed=ground.plan_placed

@@ -161,7 +161,7 @@ class Playback:
 
     def _end_unrecorded(self) -> list[Output]:
         unrecorded, self._unrecorded = self._unrecorded, None
-        return [] if unrecorded is None else unrecorded.take_back()
+        return [] if unrecorded is None else unrecorded.roll_back()
 
     def _begin(self, saved: SavedState | None) -> None:
         """Again, from a checkpoint or from the beginning of the log."""

@@ -77,7 +77,7 @@ class RecordedPlayer:
         else:
             return True
         self._at_ns = t_ns
-        self._look_behind()
+        self._read_following_stretch()
         if self._next is None or self._next.t_ns > t_ns or self.is_lost:
             return False
         self._picture.apply(self._next)  # on the other side of a gap
@@ -125,7 +125,7 @@ class RecordedPlayer:
     def _is_apart(self, frame: Frame) -> bool:
         return self._shown_ns is not None and frame.t_ns - self._shown_ns > LONGEST_NS
 
-    def _look_behind(self) -> None:
+    def _read_following_stretch(self) -> None:
         """Once behind each frame from which it stands far away."""
         if self._shown_ns is None or not self._is_far or self._looked_ns == self._shown_ns:
             return

@@ -179,12 +179,12 @@ class ReplaySession:
 
     def _run(self) -> None:
         try:
-            self._go_on()
+            self._play()
         except Exception:  # noqa: BLE001  # consoles get no more, and the end is logged
             _log.exception("the replay of %s broke off", self._window.incident_id)
             self._closed.set()
 
-    def _go_on(self) -> None:
+    def _play(self) -> None:
         self._open()
         while not self._closed.is_set():
             self._follow_changes()

@@ -33,7 +33,7 @@ class UnrecordedTime:
     def advance_time(self, t_ns: int) -> list[Output]:
         return self._pipeline.advance_time(t_ns)
 
-    def take_back(self) -> list[Output]:
+    def roll_back(self) -> list[Output]:
         state = self._pipeline.state
         state.t_ns = self._t_ns
         for name, (link, reach) in self._shown.items():

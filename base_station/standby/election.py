@@ -69,7 +69,7 @@ class Election:
         """True if the other one's liveliness token is on the bus."""
         self._token_there = there
 
-    def is_there(self, now_ns: int) -> bool:
+    def is_peer_alive(self, now_ns: int) -> bool:
         """True if heartbeats of the other station arrive."""
         if self._other is None:
             return False
@@ -78,7 +78,7 @@ class Election:
 
     def is_cut_off(self, now_ns: int) -> bool:
         """This standby receives neither the active station nor a unit, though that one had some."""
-        alone = self.role == "standby" and not self.is_there(now_ns)
+        alone = self.role == "standby" and not self.is_peer_alive(now_ns)
         return alone and not self._has_witness(now_ns)
 
     def decide(self, me: LocalStatus, now_ns: int) -> Decision:
@@ -89,7 +89,7 @@ class Election:
             self._other is not None
             and LogPosition(*self._other.place).t_ns - me.stepped.t_ns > _LACKING_NS
         )
-        other = self._other if self.is_there(now_ns) else None
+        other = self._other if self.is_peer_alive(now_ns) else None
         if self.role == "active":
             loses = other is not None and other.role == "active" and _claim(other) > _claim_of(me)
             return "step back" if loses else "stay"

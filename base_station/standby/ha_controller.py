@@ -129,12 +129,12 @@ class HaController:
         other = self._election.other
         if self.leads or other is None or other.role != "active":
             return None
-        return self.other_there()
+        return self.reachable_peer()
 
-    def other_there(self) -> str | None:
+    def reachable_peer(self) -> str | None:
         """The other station, while its heartbeats arrive."""
         other = self._election.other
-        there = self._election.is_there(self._around.clock.monotonic_ns())
+        there = self._election.is_peer_alive(self._around.clock.monotonic_ns())
         return other.station if other is not None and there else None
 
     def others_run(self) -> int:
@@ -153,8 +153,8 @@ class HaController:
 
     def view(self) -> StandbyView:
         other, now_ns = self._election.other, self._around.clock.monotonic_ns()
-        there = other is not None and self._election.is_there(now_ns)
-        in_step = self.copy.is_there and not self.copy.is_behind if self.leads else self.in_step
+        there = other is not None and self._election.is_peer_alive(now_ns)
+        in_step = self.copy.is_followed and not self.copy.is_behind if self.leads else self.in_step
         return StandbyView(
             station=self._config.name,
             role=self._election.role,
@@ -190,7 +190,7 @@ class HaController:
         other = self._election.other
         me = self._me()
         waits = self._election.role == "waiting" or self._election.is_undecided
-        if waits and not self.leads and not self._election.is_there(now_ns):
+        if waits and not self.leads and not self._election.is_peer_alive(now_ns):
             me = me._replace(other_listens=accepts_connections(self._config.peer))
         decision = self._election.decide(me, now_ns)
         if by_hand and not self.leads:
@@ -282,7 +282,7 @@ class HaController:
         stranger = self._hearing.stranger
         found = [stranger] if stranger else []
         if self.leads:
-            if not self.copy.is_there:
+            if not self.copy.is_followed:
                 found.append(
                     coded(
                         "standby-none",

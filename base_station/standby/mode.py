@@ -48,7 +48,7 @@ class Parts:
     records: Records
     pki: PkiFolder
     on_people: Callable[[], None]  # people or photos may have changed
-    on_taken_back: Callable[[str], None]  # rows that were lost with the database are there again
+    on_restored_rows: Callable[[str], None]  # rows that were lost with the database are there again
     on_lead: Callable[[], None]
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing
@@ -194,22 +194,24 @@ class Paired:
             parts.tables,
             parts.pki,
             leader=pair.followed,
-            other=pair.other_there,
+            other=pair.reachable_peer,
             others_run=pair.others_run,
             caught_up=lambda: pair.leads or pair.in_step,
             on_people=parts.on_people,
             on_forgotten=parts.forget,
             on_dropped=lambda details: parts.records.audit(STATION_ID, "AccountsCopied", details),
-            on_taken_back=parts.on_taken_back,
+            on_restored_rows=parts.on_restored_rows,
         )
         merging = BranchMerge(
             parts.bus,
             gate,
             parts.live.deliver,
             lambda: not parts.live.late_waits and self.log.flush(),
-            lambda: pair.other_there() if pair.leads else None,
+            lambda: pair.reachable_peer() if pair.leads else None,
         )
-        mending = LogRepair(parts.bus, parts.files, parts.check, pair.other_there, parts.step_again)
+        mending = LogRepair(
+            parts.bus, parts.files, parts.check, pair.reachable_peer, parts.step_again
+        )
         threads = (
             pair,
             Worker.periodic(

@@ -73,7 +73,7 @@ class ReplicaProgress:
         _confirm([*ready, *alone])
 
     @property
-    def is_there(self) -> bool:
+    def is_followed(self) -> bool:
         """True if a standby fetches this log."""
         now_ns = self._clock.monotonic_ns()
         return self._received_ns is not None and now_ns - self._received_ns < _STANDBY_TIMEOUT_NS
@@ -99,7 +99,7 @@ class ReplicaProgress:
         with self._lock:
             place = self._place()
             until_ns = self._clock.monotonic_ns() + self._confirm_ns
-            if self._has < place and self.is_there:
+            if self._has < place and self.is_followed:
                 self._waiting.append(_Waiting(place, until_ns, partial(confirmed.set_result, done)))
                 return
         confirmed.set_result(done)
@@ -107,7 +107,9 @@ class ReplicaProgress:
     def drain(self) -> None:
         """Wait until the standby has all of it, where it answers."""
         end_ns = self._clock.monotonic_ns() + _GOODBYE_NS
-        while self.is_there and self._has < self._place() and self._clock.monotonic_ns() < end_ns:
+        while (
+            self.is_followed and self._has < self._place() and self._clock.monotonic_ns() < end_ns
+        ):
             time.sleep(_LOOK_S)
 
     def close(self) -> None:
@@ -151,14 +153,14 @@ class LeaderOnlyGate:
             confirmed.set_exception(StoreError(refusal))
             return confirmed
 
-        def hand_on(done: Future[Result]) -> None:
+        def forward_result(done: Future[Result]) -> None:
             error = done.exception()
             if error is not None:
                 confirmed.set_exception(error)
             else:
                 self._copy.confirm(done.result(), confirmed)
 
-        begin().add_done_callback(hand_on)
+        begin().add_done_callback(forward_result)
         return confirmed
 
 

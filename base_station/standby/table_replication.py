@@ -88,7 +88,7 @@ class TableReplication:
         on_people: Callable[[], None],
         on_forgotten: Callable[[str], None],
         on_dropped: Callable[[str], None],
-        on_taken_back: Callable[[str], None],
+        on_restored_rows: Callable[[str], None],
     ) -> None:
         """``leader``: station to copy from, where that is another; ``other``: station whose audit
         to add, when this log has ``caught_up``: data that it orders to forget must be there.
@@ -98,7 +98,7 @@ class TableReplication:
         ``on_people`` is called when people or photos may have changed, ``on_forgotten`` with a
         person or an incident ("person ID") that the other station has forgotten, and again if that
         cannot be noted, ``on_dropped`` with a sentence about rows that were only here,
-        ``on_taken_back`` with one about rows that this one had lost.
+        ``on_restored_rows`` with one about rows that this one had lost.
         """
         self._bus = bus
         self._tables = tables
@@ -111,7 +111,7 @@ class TableReplication:
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
         self._copied_digest = self._enrolled_digest = self._standby_digest = b""
-        self._on_taken_back = on_taken_back
+        self._on_restored_rows = on_restored_rows
         self._base_map: tuple[Row, ...] = ()  # of the leader
         self._audit_number = 0  # up to which the other station's audit is here
         self._audit_run = 0  # of its program, in which that was counted
@@ -135,7 +135,7 @@ class TableReplication:
             lost = self._tables.lost()
             dropped = self._tables.copy(rows)
             if lost and not self._tables.lost():
-                self._on_taken_back(f"copied again from the other station: {', '.join(lost)}")
+                self._on_restored_rows(f"copied again from the other station: {', '.join(lost)}")
             self._base_map = rows.base_map
             if dropped and not self._copied_digest:  # else the active station has removed them
                 self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
@@ -154,9 +154,9 @@ class TableReplication:
         if self._tables.lacks_base_map():
             self._base_map = rows.base_map
             self._copy_base_map(other)
-        back = self._tables.take_back(rows)
+        back = self._tables.restore_lost_rows(rows)
         if back:
-            self._on_taken_back(f"back from the other station: {', '.join(back)}")
+            self._on_restored_rows(f"back from the other station: {', '.join(back)}")
         taken_away, photos = self._tables.take_away(rows), self._copy_photos(other, stop)
         if back or taken_away or photos:
             self._on_people()

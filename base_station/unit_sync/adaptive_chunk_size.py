@@ -29,6 +29,6 @@ class AdaptiveChunkSize:
         fitting = min(self.answer_bytes * _WANTED_NS // max(took_ns, 1), most)
         self.answer_bytes = max(LEAST_BYTES, min(fitting, MOST_BYTES))
 
-    def note_nothing(self) -> None:
+    def note_timeout(self) -> None:
         """No answer came at all."""
         self.answer_bytes = LEAST_BYTES

@@ -244,7 +244,7 @@ class JournalClient:
         if not valid:
             self._silent = True
             if question.what == "range":
-                self._pace.note_nothing()
+                self._pace.note_timeout()
         elif question.what == "range":
             self._pace.note(came_bytes, took_ns)
         elif question.what == "acknowledge" and self._acknowledging is not None:
@@ -268,7 +268,7 @@ class JournalClient:
 
     def _note_index(self, question: Question, came_bytes: int, took_ns: int) -> None:
         if not came_bytes:
-            self._index_pace.note_nothing()
+            self._index_pace.note_timeout()
             return
         self._index_pace.note(came_bytes, took_ns)
         if self._has_more and self._indexed_at_once > dict(question.parameters)["newest"]:

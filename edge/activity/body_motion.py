@@ -81,7 +81,7 @@ class BodyMotion:
             return None
         samples = np.vstack(self._parts)
         self._parts = []
-        accel_mps2, gyro_radps = _known(samples[:, :3]), _known(samples[:, 3:])
+        accel_mps2, gyro_radps = _finite_rows(samples[:, :3]), _finite_rows(samples[:, 3:])
         if len(accel_mps2) < _ENOUGH_SAMPLES:
             return None
         force_mps2 = accel_mps2.mean(axis=0)
@@ -101,7 +101,7 @@ class BodyMotion:
         return before is not None and cosine(before, force_mps2) < _ROTATED_COS
 
 
-def _known(vectors: Floats) -> Floats:
+def _finite_rows(vectors: Floats) -> Floats:
     """Return those (n, 3) that were not missed."""
     return np.asarray(vectors[np.isfinite(vectors).all(axis=1)])
 

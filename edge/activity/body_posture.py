@@ -119,10 +119,10 @@ class BodyPostureEstimator:
         observed: dict[Segment, SegmentObservation] = {}
         for place, window in self._latest.items():
             axes = self._axes[place]
-            if not axes.knows_up or abs(t_ns - window.end_ns) > _SILENT_NS:
+            if not axes.has_up_axis or abs(t_ns - window.end_ns) > _SILENT_NS:
                 continue
             observed[SEGMENT_OF_PLACE[place]] = SegmentObservation(
-                axes.inclination(window.up_b), axes.knows_forward, window.moving
+                axes.inclination(window.up_b), axes.has_forward_axis, window.moving
             )
         return observed
 

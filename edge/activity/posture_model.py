@@ -85,7 +85,7 @@ class SegmentObservation:
     """Observation of one segment in a window."""
 
     up: Floats  # (3,) forward, right, up; a unit vector
-    knows_forward: bool  # False: forward and right may be turned about up by any angle
+    has_forward_axis: bool  # False: forward and right may be turned about up by any angle
     moving: bool
 
 
@@ -105,7 +105,7 @@ def _log_likelihood(pattern: Pattern, observed: Mapping[Segment, SegmentObservat
 def _log_direction(segment: Segment, expected: Floats, observed: SegmentObservation) -> float:
     """Return the logarithm of the density of a direction, by von Mises and Fisher."""
     concentration = 1.0 / _SPREAD_RAD[segment] ** 2
-    if observed.knows_forward:
+    if observed.has_forward_axis:
         along = float(expected @ observed.up)
     else:  # as if it were turned where it fits best
         level = float(np.hypot(*expected[:2]) * np.hypot(*observed.up[:2]))

@@ -49,11 +49,11 @@ class SegmentAxes:
             self._walks = 1
 
     @property
-    def knows_up(self) -> bool:
+    def has_up_axis(self) -> bool:
         return self._up_b is not None
 
     @property
-    def knows_forward(self) -> bool:
+    def has_forward_axis(self) -> bool:
         """True where front and sides are distinguished."""
         length = float(np.linalg.norm(self._forward_b))
         is_shown = self._is_given or self._walks >= _FORWARD_WALKS

@@ -49,7 +49,7 @@ class WalkDirection:
 
 
 def _way(axes: SegmentAxes, direction_b: Floats) -> Mobility:
-    if not axes.knows_forward:
+    if not axes.has_forward_axis:
         return Mobility.MOVING
     forward, right, _ = axes.inclination(direction_b)
     angle_rad = atan2(float(right), float(forward))

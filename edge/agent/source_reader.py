@@ -140,7 +140,7 @@ class SourceReader:
     def _run(self) -> None:
         try:
             for timed in self._timed_batches():
-                if not self._hand_over(timed):
+                if not self._enqueue(timed):
                     return
         except MusterError as error:
             self.failure = str(error)
@@ -180,7 +180,7 @@ class SourceReader:
         remaining_s = (due_ns - self._clock.monotonic_ns()) / NS_PER_S
         return not self._stop.wait(max(0.0, remaining_s))
 
-    def _hand_over(self, timed: TimedBatch) -> bool:
+    def _enqueue(self, timed: TimedBatch) -> bool:
         while not self._stop.is_set():
             try:
                 self._ready.put(timed, timeout=_PUT_TIMEOUT_S)

@@ -125,7 +125,7 @@ class SensorGroup:
 
         def read(name: str) -> None:
             for batch in self._batches_of(name):
-                if not self._hand_over(ready, batch):
+                if not self._enqueue(ready, batch):
                     return
 
         threads = [
@@ -142,7 +142,7 @@ class SensorGroup:
                 if is_over:
                     return
 
-    def _hand_over(self, ready: Queue[SensorBatch], batch: SensorBatch) -> bool:
+    def _enqueue(self, ready: Queue[SensorBatch], batch: SensorBatch) -> bool:
         """Wait until there is room; return False when closed meanwhile."""
         while not self._closed.is_set():
             try:

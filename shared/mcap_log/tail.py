@@ -55,9 +55,9 @@ class LogTail:
         """
         if self._file is None:
             self._open_next()
-        records = self._read_on()
+        records = self._read_more()
         while not records and self._open_next():
-            records = self._read_on()
+            records = self._read_more()
         return records
 
     def _open_next(self) -> bool:
@@ -86,7 +86,7 @@ class LogTail:
             self._file.close()
             self._file = None
 
-    def _read_on(self) -> list[LogRecord]:
+    def _read_more(self) -> list[LogRecord]:
         """Records of the present segment; empty: it has no more yet."""
         records: list[LogRecord] = []
         while not records and (data := self._next_bytes()):

@@ -257,7 +257,7 @@ def test_station_copies_users_people_and_audit_of_the_other(
     assert other.read() == one.read()
     assert len(Records(standby, clock).audit_entries(EVER)) == 1
     other.note_lost(["people"])
-    assert other.take_back(one.read()) == ()
+    assert other.restore_lost_rows(one.read()) == ()
 
 
 @pytest.mark.parametrize("to", DATABASE_KINDS)

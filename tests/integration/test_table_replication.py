@@ -65,7 +65,7 @@ class Pair:
             on_people=side.roster.read_again,
             on_forgotten=lambda _: None,
             on_dropped=pytest.fail,
-            on_taken_back=self.taken_back.append,
+            on_restored_rows=self.taken_back.append,
         )
 
 
@@ -119,7 +119,7 @@ def test_tables_lost_by_the_leader_are_kept_at_the_standby(
     follows.copy(leads)
     assert [one.username for one in follows.accounts.users()] == ["ada"]
     assert follows.roster.people() == [], "of which it has lost none"
-    leads.tables.take_back(follows.tables.read())
+    leads.tables.restore_lost_rows(follows.tables.read())
     follows.copy(leads)
     for one in sides:
         assert [user.username for user in one.accounts.users()] == ["ada", "admin"]
@@ -167,7 +167,7 @@ def copy_from(
         on_people=standby.roster.read_again,
         on_forgotten=on_forgotten,
         on_dropped=lambda _: None,
-        on_taken_back=lambda _: None,
+        on_restored_rows=lambda _: None,
     )
 
 

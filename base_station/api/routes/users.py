@@ -103,7 +103,7 @@ def change_own_password(
     throttle.check_account(who.username)
     if change.new_password == change.old_password:
         raise Problem(422, "The new password is the old one; choose another.")
-    if not station.accounts.is_right(who.username, change.old_password):
+    if not station.accounts.verify_password(who.username, change.old_password):
         station.records.audit(who.username, "PasswordRefused", "")
         raise Problem(403, "The old password is wrong.")
     station.accounts.change_user(who.username, change.new_password, None)

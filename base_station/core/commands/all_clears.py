@@ -42,7 +42,7 @@ def give(state: StationState, by: str, action: SendCommand) -> Iterator[SentComm
     for evacuation in evacuations[: place + 1]:
         if _end_for(evacuation, recipients, action.command_id, state.t_ns) or evacuation is ended:
             yield evacuation
-    _end_wholly(ended, state.t_ns)
+    _end_for_all(ended, state.t_ns)
     yield _command(state, by, action, ended, recipients)
 
 
@@ -68,7 +68,7 @@ def _end_for(
     return bool(ended)
 
 
-def _end_wholly(evacuation: SentCommand, t_ns: int) -> None:
+def _end_for_all(evacuation: SentCommand, t_ns: int) -> None:
     """End it for all: members who were ordered out again have another evacuation to answer."""
     evacuation.ended_ns = t_ns
     for delivery in evacuation.deliveries.values():

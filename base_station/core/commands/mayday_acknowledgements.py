@@ -47,13 +47,13 @@ def withdraw(state: StationState) -> Iterator[SentCommand]:
         if command.kind is not CommandKind.MAYDAY_ACKNOWLEDGED:
             continue
         for delivery in command.deliveries.values():
-            reason = _over(command, state.units[delivery.unit_id])
+            reason = _end_reason(command, state.units[delivery.unit_id])
             if reason and command.awaits(delivery):
                 delivery.expired_ns, delivery.reason = state.t_ns, reason
                 yield command
 
 
-def _over(command: SentCommand, unit: UnitState) -> str:
+def _end_reason(command: SentCommand, unit: UnitState) -> str:
     """Return why its mayday is over; empty where it is not."""
     if not unit.mayday.is_active:
         return CANCELLED

@@ -19,7 +19,7 @@ def is_about(pin: Pin, closed_ns: int) -> bool:
     """True of a pin of the closed incident. Start positions are set beforehand: one that is set
     after an incident is about the next one.
     """
-    return pin.set_ns <= closed_ns or _is_then(pin.t_ns, closed_ns)
+    return pin.set_ns <= closed_ns or _is_before_close(pin.t_ns, closed_ns)
 
 
 def concerns_closed_incident(
@@ -37,10 +37,10 @@ def concerns_closed_incident(
             earlier = pins.get(action.pin_id)
             is_moved = earlier is not None and is_about(earlier, closed_ns)
             is_here = _is_on(state, site_id, action.unit_id)
-            return is_moved or (is_here and _is_then(action.t_ns, closed_ns))
+            return is_moved or (is_here and _is_before_close(action.t_ns, closed_ns))
         case StartTogether():
             is_here = any(_is_on(state, site_id, unit_id) for unit_id in action.unit_ids)
-            return is_here and _is_then(action.t_ns, closed_ns)
+            return is_here and _is_before_close(action.t_ns, closed_ns)
         case RemovePin(pin_id=pin_id):
             removed = (one for one in pins.values() if _goes_with(one, pin_id))
             return any(is_about(one, closed_ns) for one in removed)
@@ -57,7 +57,7 @@ def _is_on(state: StationState, site_id: str, unit_id: str) -> bool:
     return unit is not None and unit.site_id == site_id
 
 
-def _is_then(t_ns: int, closed_ns: int) -> bool:
+def _is_before_close(t_ns: int, closed_ns: int) -> bool:
     return 0 < t_ns <= closed_ns
 
 

@@ -144,13 +144,13 @@ class DepartmentForwarder:
             self._outbox.keep_newest(_KEPT_BY_STANDBY)
             return _RETRY_S
         if not self._bus.has_subscriber(department_summary_key(self._enrolment.name)):
-            self._status.set("connecting", self._why_away())
+            self._status.set("connecting", self._away_reason())
             return _RETRY_S
         batch = self._outbox.next_batch(_MAX_EVENTS, _MAX_BYTES)
         if not batch:
             self._status.set("connected")
             return _RETRY_S
-        receipt = self._hand_over(self._bus, batch)
+        receipt = self._send_batch(self._bus, batch)
         if receipt is None:
             self._status.set("connecting", "it does not acknowledge events")
             return _RETRY_S
@@ -162,7 +162,7 @@ class DepartmentForwarder:
         self._status.set("connected")
         return 0.0
 
-    def _hand_over(self, bus: Bus, batch: tuple[StoredEvent, ...]) -> EventReceipt | None:
+    def _send_batch(self, bus: Bus, batch: tuple[StoredEvent, ...]) -> EventReceipt | None:
         """None: no receipt came in time; the department may have stored the events all the same,
         and stores none twice.
         """
@@ -183,7 +183,7 @@ class DepartmentForwarder:
                 logger.warning("a receipt of the department cannot be read: %s", error)
         return None
 
-    def _why_away(self) -> str:
+    def _away_reason(self) -> str:
         now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
         renewal = f"renew it there with {self._enrolment.made_again}"
         return validity_problem(self._enrolment.identity, now, renewal) or (

@@ -117,13 +117,13 @@ class ClimbDetector(msgspec.Struct):
         if abs(fallen_m) > SLOPE * way_m:
             return self._climb(before_m, way_m)
         self.level_way_m += way_m
-        return self._over() if self.level_way_m > LANDING_M else None
+        return self._finish_climb() if self.level_way_m > LANDING_M else None
 
     def _climb(self, before_m: tuple[float, float, float], way_m: float) -> Climb | None:
         climb = None
         if self.begin_m is not None:
             rises = (self.here_m[2] - before_m[2]) * (self.end_m[2] - self.begin_m[2])
-            climb = self._over() if rises < 0.0 else None
+            climb = self._finish_climb() if rises < 0.0 else None
         if self.begin_m is None:
             self.begin_m, self.sums_m = before_m, (0.0, 0.0, 0.0)
         self.end_m, self.level_way_m = self.here_m, 0.0
@@ -133,7 +133,7 @@ class ClimbDetector(msgspec.Struct):
         self.sums_m = north, east, way + way_m
         return climb
 
-    def _over(self) -> Climb | None:
+    def _finish_climb(self) -> Climb | None:
         begin_m, self.begin_m = self.begin_m, None
         north, east, way_m = self.sums_m
         if begin_m is None or abs(self.end_m[2] - begin_m[2]) < STOREY_M or way_m <= 0.0:

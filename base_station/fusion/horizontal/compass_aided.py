@@ -61,7 +61,7 @@ class CompassAidedFilter(HorizontalFilter):
         if isinstance(saved, SavedCompassAided):
             self._compass = saved.compass
             if saved.without_compass is not None:
-                self._without_compass = self._other(saved.without_compass)
+                self._without_compass = self._copy_of(saved.without_compass)
 
     def update_compass(self, heading: CompassHeading, *, assumed: bool) -> None:
         """Update with a compass heading. ``assumed``: the own frame has been shown with its north
@@ -84,7 +84,7 @@ class CompassAidedFilter(HorizontalFilter):
         if variance == math.inf:
             return
         if self._without_compass is None:
-            self._without_compass = self._other(super().save())
+            self._without_compass = self._copy_of(super().save())
         self.update_open_heading(heading.turn_rad, variance)
 
     def reset_compass(self) -> None:
@@ -169,7 +169,7 @@ class CompassAidedFilter(HorizontalFilter):
         if self._without_compass is not None:
             self._without_compass.reframe(turn_rad, north_m, east_m)
 
-    def _other(self, saved: SavedHorizontal) -> HorizontalFilter:
+    def _copy_of(self, saved: SavedHorizontal) -> HorizontalFilter:
         other = HorizontalFilter(*self._parameters)
         other.load(saved)
         return other

@@ -45,7 +45,7 @@ def add_receiver(
     fresh_m2 = (1.0 - OWN_PART) * own_m2 + admitted_m2 * repeats
     if estimate.aligned.any():
         off = place_of(estimate.x[knot], since) + common.common_mode_m(t_ns) - place
-        right = _right((off**2).sum(axis=1), own_m2 + admitted_m2)
+        right = _inlier_probability((off**2).sum(axis=1), own_m2 + admitted_m2)
         fresh_m2 = 1.0 / (right / fresh_m2 + (1.0 - right) / (fresh_m2 + WRONG_M**2 * repeats))
     slow = _slow_error(base, chain, knot, t_ns)
     columns = base + STATES * knot
@@ -85,7 +85,7 @@ def _slow_error(base: int, chain: Chain, knot: Ints, t_ns: Ints) -> tuple[Term, 
     return (columns, 1.0 - part), (base + SLOW + STATES * behind, part)
 
 
-def _right(apart_m2: Floats, variance_m2: Floats) -> Floats:
+def _inlier_probability(apart_m2: Floats, variance_m2: Floats) -> Floats:
     """Probability of fixes, by their squared distances, that they err as is expected."""
     wide_m2 = variance_m2 + WRONG_M**2
     right = (1.0 - WRONG_PART) / variance_m2 * np.exp(-0.5 * apart_m2 / variance_m2)

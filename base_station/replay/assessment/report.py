@@ -127,7 +127,7 @@ def _unit(
         stated=stated_figures(stated_m(live)),
         against_smoothed=figures_of(errors_against(live, smoothed)),
         floor_probability=_floor_probability(state.site_of(unit_id), live),
-        floor_right=_floor_right(live, smoothed),
+        floor_right=_floor_accuracy(live, smoothed),
         trust=_trust(state, unit_id),
         pin_residuals=_pin_residuals(state, verdicts, unit_id, live),
         loop_closure_m=None if closure is None else round(closure[0], 2),
@@ -146,7 +146,7 @@ def _floor_probability(site: SiteState, live: Sequence[TrackSample]) -> float | 
     return floor_probability(live, min(heights)) if heights and min(heights) > 0.0 else None
 
 
-def _floor_right(live: Sequence[TrackSample], smoothed: Sequence[TrackSample]) -> float | None:
+def _floor_accuracy(live: Sequence[TrackSample], smoothed: Sequence[TrackSample]) -> float | None:
     """Fraction of samples whose shown floor is the one of the smoothed trail; None: no floors."""
     with_floor = [one for one in live if one.floor is not None]
     right = []

@@ -123,18 +123,18 @@ class Accounts:
         with self._store.write() as session:
             _end_sessions(session, _user(session, username))
 
-    def is_right(self, username: str, password: str) -> bool:
+    def verify_password(self, username: str, password: str) -> bool:
         """Takes as long for a name that does not exist."""
         with self._store.read() as session:
             user = session.get(User, username)
-        return self._passwords.is_right(password, None if user is None else user.password_hash)
+        return self._passwords.is_valid(password, None if user is None else user.password_hash)
 
     def log_in(self, username: str, password: str) -> str | None:
         """The secret of a new session; None where name or password is wrong."""
         with self._store.read() as session:
             user = session.get(User, username)
         stored = None if user is None else user.password_hash
-        if not self._passwords.is_right(password, stored) or user is None:
+        if not self._passwords.is_valid(password, stored) or user is None:
             return None
         now_ns = self._clock.utc_ns()
         with self._store.write() as session:

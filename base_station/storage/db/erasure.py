@@ -68,7 +68,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     for one in erasure.wearings:
         session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
         session.execute(delete(UnitStart).where(_within(UnitStart, one)))
-    _looked_back(session, erasure)
+    _delete_computed_results(session, erasure)
     _alarms(session, erasure)
     _audit(session, erasure)
     _imports(session, erasure)
@@ -99,7 +99,7 @@ def _imports(session: Session, erasure: Erasure) -> None:
         row.file_name = names.erased(row.file_name)
 
 
-def _looked_back(session: Session, erasure: Erasure) -> None:
+def _delete_computed_results(session: Session, erasure: Erasure) -> None:
     """Delete results that were computed from incidents of an erased person; they can be computed
     again.
     """

@@ -25,7 +25,7 @@ from base_station.storage.db.models import (
 from base_station.storage.db.replicated_rows import (
     ReplicatedRows,
     Row,
-    end_what_ended,
+    apply_tombstones,
     rows_of,
     without_ended,
 )
@@ -51,12 +51,12 @@ def with_what_it_lost(session: Session, theirs: ReplicatedRows) -> ReplicatedRow
     return msgspec.structs.replace(theirs, **own)
 
 
-def take_back(session: Session, standby: ReplicatedRows) -> tuple[str, ...]:
+def restore_lost_rows(session: Session, standby: ReplicatedRows) -> tuple[str, ...]:
     """Take back rows that this station lost and ``standby`` has; gives their names."""
     lost = set(lost_tables(session))
     if not lost:
         return ()
-    end_what_ended(session, standby.ended)
+    apply_tombstones(session, standby.ended)
     theirs = without_ended(session, standby)
     back: list[str] = []
     if "users" in lost:

@@ -207,7 +207,7 @@ class SqlProjection:
             return True
         if left_out:
             logger.error("%d places of units are no numbers", left_out)
-        self._settle(batch, given_up, left_out)
+        self._complete(batch, given_up, left_out)
         return True
 
     def _note_in_memory(self, batch: Sequence[Projection]) -> None:
@@ -244,7 +244,7 @@ class SqlProjection:
                 self._mark.clear()
                 self._marked = False
 
-    def _settle(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
+    def _complete(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
         """Done with the batch: written, or given up for a reason; ``left_out``: places in it."""
         with self._changed:
             self._failure = ""

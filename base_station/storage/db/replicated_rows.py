@@ -52,7 +52,7 @@ def row_of(entry: Base) -> Row:
     return {name: getattr(entry, name) for name in names}
 
 
-def end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
+def apply_tombstones(session: Session, ended: tuple[Row, ...]) -> bool:
     """True if anything was not known to be over."""
     known = set(session.scalars(select(Tombstone.what)))
     new = {row["what"]: row for row in ended if row["what"] not in known}

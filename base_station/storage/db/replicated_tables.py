@@ -15,7 +15,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from base_station.storage.db.database import Database
-from base_station.storage.db.lost_tables import lost_tables, take_back, with_what_it_lost
+from base_station.storage.db.lost_tables import lost_tables, restore_lost_rows, with_what_it_lost
 from base_station.storage.db.models import (
     ApiToken,
     AuditEntry,
@@ -31,7 +31,7 @@ from base_station.storage.db.models import (
 from base_station.storage.db.replicated_rows import (
     ReplicatedRows,
     Row,
-    end_what_ended,
+    apply_tombstones,
     row_of,
     rows_of,
     without_ended,
@@ -76,13 +76,13 @@ class ReplicatedTables:
         that the active station has lost stay here until it has taken them back.
         """
         with self._store.write() as session:
-            end_what_ended(session, active.ended)
+            apply_tombstones(session, active.ended)
             session.execute(delete(LostTable).where(LostTable.name.not_in(active.lost)))
             theirs = with_what_it_lost(session, without_ended(session, active))
             dropped = (
-                *_only_here(session, User.username, "user", theirs.users),
-                *_only_here(session, ApiToken.token_id, "token", theirs.tokens),
-                *_only_here(session, PersonRow.person_id, "person", theirs.people),
+                *_local_only(session, User.username, "user", theirs.users),
+                *_local_only(session, ApiToken.token_id, "token", theirs.tokens),
+                *_local_only(session, PersonRow.person_id, "person", theirs.people),
             )
             users = tuple(_with_the_later(session, row) for row in theirs.users)
             _replace(session, User, User.username, users)
@@ -100,7 +100,7 @@ class ReplicatedTables:
                 session.execute(delete(BaseMap))
         return dropped
 
-    def take_back(self, standby: ReplicatedRows) -> tuple[str, ...]:
+    def restore_lost_rows(self, standby: ReplicatedRows) -> tuple[str, ...]:
         """Take back rows that this station lost with its database and the standby still has; gives
         their names.  Pictures are asked for afterwards.
 
@@ -108,7 +108,7 @@ class ReplicatedTables:
         because it had no user, goes where there is another again.
         """
         with self._store.write() as session:
-            return take_back(session, standby)
+            return restore_lost_rows(session, standby)
 
     def lost(self) -> tuple[str, ...]:
         """Tables that were made again, and do not have their rows back so far."""
@@ -125,7 +125,7 @@ class ReplicatedTables:
         passwords; nothing else of it.  True if there was any.
         """
         with self._store.write() as session:
-            some = end_what_ended(session, standby.ended)
+            some = apply_tombstones(session, standby.ended)
             for row in without_ended(session, standby).users:
                 user = session.get(User, row["username"])
                 if user is None or user.created_ns != row["created_ns"]:
@@ -219,7 +219,7 @@ def _with_the_later(session: Session, theirs: Row) -> Row:
     }
 
 
-def _only_here(
+def _local_only(
     session: Session, key: InstrumentedAttribute[str], what: str, rows: Iterable[Row]
 ) -> Iterable[str]:
     here = set(session.scalars(select(key)))

@@ -256,7 +256,7 @@ class Transfer:
                 return understood
         except Exception as error:  # noqa: BLE001  # any error means: no answer
             logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
-        self._pace.note_nothing()
+        self._pace.note_timeout()
         self.state = TransferState.WAITING
         self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
         return None

@@ -105,17 +105,17 @@ class TransferQueue:
 
     def _work(self, pulls: list[Pull]) -> float:
         """Ask each unit once; return the pause until the next round."""
-        self._let_go({pull.fetch_id for pull in pulls})
+        self._close_ended({pull.fetch_id for pull in pulls})
         answered = False
         for pull in pulls:
             if self._pulls.is_closing:
                 break
-            answered |= self._turn(pull)
+            answered |= self._step_transfer(pull)
         if not pulls:
             return UNTIL_WOKEN
         return 0.0 if answered else _REST_S
 
-    def _turn(self, pull: Pull) -> bool:
+    def _step_transfer(self, pull: Pull) -> bool:
         """One question to one unit; whether it answered."""
         try:
             fetch = self._running.get(pull.fetch_id)
@@ -138,7 +138,7 @@ class TransferQueue:
         )
         return fetch.state is not TransferState.WAITING
 
-    def _let_go(self, under_way: set[str]) -> None:
+    def _close_ended(self, under_way: set[str]) -> None:
         for fetch_id in self._running.keys() - under_way:
             self._running.pop(fetch_id).close()
 

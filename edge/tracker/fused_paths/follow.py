@@ -165,11 +165,13 @@ def _align(state: FusionState, config: FusionConfig, at_once: bool) -> None:
             - math.atan2(path.alignment_n_m[1], path.alignment_n_m[0])
         )
     apart_rad = math.sqrt(2.0) * config.alignment_apart_m / max(gone_m, config.alignment_apart_m)
-    _place_beside(state, which, apart_rad, config)
+    _place_with_companion(state, which, apart_rad, config)
 
 
 @njit()
-def _place_beside(state: FusionState, which: int, apart_rad: float, config: FusionConfig) -> None:
+def _place_with_companion(
+    state: FusionState, which: int, apart_rad: float, config: FusionConfig
+) -> None:
     """Put a path where the other is, with its heading but for ``apart_rad``."""
     path, companion = state.paths[which], state.paths[1 - which]
     at, beside = ERRORS * which, ERRORS * (1 - which)

@@ -89,11 +89,11 @@ def detect_full_scale(
         found = found or full_scale.clip[axis] < before
     if found:
         for axis in range(3):
-            _mark_back(ring, k, full_scale, axis, now_s)
+            _mark_earlier_samples(ring, k, full_scale, axis, now_s)
 
 
 @njit()
-def _mark_back(ring: Ring, k: int, full_scale: Any, axis: int, now_s: float) -> None:
+def _mark_earlier_samples(ring: Ring, k: int, full_scale: Any, axis: int, now_s: float) -> None:
     mask = len(ring) - 1
     for i in range(k - 1, max(-1, k - span(ring) // 2), -1):
         sample = ring[i & mask]

@@ -11,7 +11,7 @@ from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import ShankState, StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.stride import begin_stride, end_stride, predict
 from edge.tracker.torso_shank.torso_front import learn_front
-from edge.tracker.torso_shank.torso_steps import follow_steps, go_on
+from edge.tracker.torso_shank.torso_steps import advance_path, follow_steps
 from edge.tracker.trunk.attitude import add_forward
 from edge.tracker.trunk.dead_reckoning import begin_walk, place_row, state_errors
 
@@ -46,7 +46,7 @@ def move(
     elif not state.walking and not state.by_steps and state.steps_since >= config.steps_alone:
         begin_walk(trunk, config.trunk)
         state.by_steps, state.counted_at = True, trunk.released - 1
-        go_on(ring, state, k, state.steps_since_m, config)
+        advance_path(ring, state, k, state.steps_since_m, config)
     if state.by_steps:
         row.reasons |= _SAMPLE_GAP if is_gone else _NO_STANCE
         state_errors(trunk, row, config.trunk)
@@ -75,7 +75,7 @@ def _take_instant(
     if state.by_steps:
         since_s = now_s - ring[state.counted_at & (len(ring) - 1)].t_s
         if k > state.counted_at:
-            go_on(ring, state, k, speed_mps * min(since_s, config.first_stride_s), config)
+            advance_path(ring, state, k, speed_mps * min(since_s, config.first_stride_s), config)
         state.by_steps = False
     elif state.walking:
         end_stride(ring, state, k, velocity_n_mps, config)
@@ -105,7 +105,7 @@ def _start(
         state.counted_at -= 1
     evenly_s = since_s - 0.5 * min(since_s, config.first_stride_s)
     if k > state.counted_at:
-        go_on(ring, state, k, speed_mps * evenly_s, config)
+        advance_path(ring, state, k, speed_mps * evenly_s, config)
 
 
 @njit()

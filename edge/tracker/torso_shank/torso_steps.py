@@ -36,11 +36,11 @@ def follow_steps(ring: Ring, state: StrideState, k: int, config: TorsoShankConfi
     if state.by_steps and peak_at > state.counted_at:
         # Of a step that began before the steps counted, only what came then.
         since_s = t_s - ring[state.counted_at & mask].t_s
-        go_on(ring, state, peak_at, length_m * min(since_s / period_s, 1.0), config)
+        advance_path(ring, state, peak_at, length_m * min(since_s / period_s, 1.0), config)
 
 
 @njit()
-def go_on(
+def advance_path(
     ring: Ring, state: StrideState, at: int, length_m: float, config: TorsoShankConfig
 ) -> None:
     """Go a way up to sample ``at``, from where the way was counted to."""

@@ -50,7 +50,7 @@ def is_accepted(
         return True
     if state.swing_level_speed_mps > config.acceptance.slow_swing_mps:
         return True
-    if _rests_on(ring, progress, k, config):
+    if _is_lasting_rest(ring, progress, k, config):
         return True
     velocity, error = state.velocity_n_mps, state.rival.error
     if _fits(ring, progress, state, k, velocity[0], velocity[1], velocity[2], config):
@@ -71,7 +71,7 @@ def is_accepted(
 
 
 @njit()
-def _rests_on(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> bool:
+def _is_lasting_rest(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> bool:
     """True where the foot lies as still as in a stance for longer than any foot in the air."""
     mask = len(ring) - 1
     stop = min(progress.measured, reach(ring, k))

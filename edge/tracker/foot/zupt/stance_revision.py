@@ -52,7 +52,7 @@ def weigh_stance(progress: Progress, state: FilterState, t_s: float, config: Esk
     """
     rival = state.rival
     if rival.alive and _was_none(state, config):
-        _take_back(state, config)
+        _undo_stance(state, config)
         progress.misfit_s = t_s
     slow = state.swing_level_speed_mps <= config.acceptance.slow_swing_mps
     rival.alive = slow and state.stance_after_s > config.acceptance.stance_pause_s
@@ -103,7 +103,7 @@ def _was_none(state: FilterState, config: EskfConfig) -> bool:
 
 
 @njit()
-def _take_back(state: FilterState, config: EskfConfig) -> None:
+def _undo_stance(state: FilterState, config: EskfConfig) -> None:
     """Undo what the stance before has done, to the state and to what was learned from it."""
     rival = state.rival
     error = rival.error

@@ -29,6 +29,6 @@ def test_at_most_two_password_checks_run_at_once(monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(PasswordHash, name, work)
     passwords = Passwords()
     with ThreadPoolExecutor(8) as pool:
-        pool.map(lambda _: passwords.is_right(SECRET, SECRET), range(8))
+        pool.map(lambda _: passwords.is_valid(SECRET, SECRET), range(8))
         pool.map(lambda _: passwords.hash(SECRET), range(8))
     assert 0 < most <= 2

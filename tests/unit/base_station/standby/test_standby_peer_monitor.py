@@ -113,6 +113,8 @@ def test_station_that_said_goodbye_is_waited_for_half_as_long(ends: Ends) -> Non
     ends.beat()
     own.close()
     ends.clock.advance(2.0)
-    assert ends.election.is_there(ends.clock.monotonic_ns()), "its own token says nothing of it"
+    assert ends.election.is_peer_alive(ends.clock.monotonic_ns()), (
+        "its own token says nothing of it"
+    )
     token.close()
-    assert not ends.election.is_there(ends.clock.monotonic_ns())
+    assert not ends.election.is_peer_alive(ends.clock.monotonic_ns())

@@ -57,5 +57,5 @@ def test_messages_smaller_than_expected_keep_no_link_slow() -> None:
 def test_size_is_reset_after_no_answer() -> None:
     pace = AdaptiveChunkSize()
     pace.note(pace.answer_bytes, 0)
-    pace.note_nothing()
+    pace.note_timeout()
     assert pace.answer_bytes == LEAST_BYTES
