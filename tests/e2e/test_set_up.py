@@ -323,8 +323,10 @@ def test_ordinary_geojson_and_dxf_become_plans(page: Page, complaints: list[str]
     site.get_by_label("Unit of length").select_option("cm")
     confirm(site, "Replace plan")
     expect(site).to_have_count(0)
-    (wall_line,) = (one["geometry"]["coordinates"] for one in plan_of(page)["features"])
+    plan = plan_of(page)
+    (wall_line,) = (one["geometry"]["coordinates"] for one in plan["features"])
     assert wall_line == [[0, 0], [10, 0]]
+    assert plan["muster"]["name"] == "house"
 
 
 def test_storeys_of_a_model_become_floors(

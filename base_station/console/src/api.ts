@@ -272,11 +272,11 @@ function onSiteOf(incidentId?: string): string {
   return incidentId === undefined ? "" : `?incident_id=${id(incidentId)}`;
 }
 
-/** Its data is deleted. */
-export const draftPlan = (file: File, page: number, unit: string) =>
+/** The file is not kept; `name` is for the plan. */
+export const draftPlan = (file: File, name: string, page: number, unit: string) =>
   call<PlanDraft>(
     "POST",
-    `/site/drafts?page=${page}&name=${id(file.name.slice(0, 80))}${unit === "" ? "" : `&unit=${unit}`}`,
+    `/site/drafts?page=${page}&name=${id(name)}${unit === "" ? "" : `&unit=${unit}`}`,
     new Blob([file], { type: "application/octet-stream" }),
   );
 export const setPlan = (plan: object, incidentId?: string) =>

@@ -35,11 +35,12 @@ export function DraftPlan({ file, shown, done }: Props) {
   const page = useSignal(1);
   const unit = useSignal("");
   const usesPlace = useSignal(true);
+  const name = file.name.replace(/\.[^.]*$/, "").slice(0, 80);
   const isDxf = /\.dxf$/i.test(file.name);
   useEffect(() => {
     let isWanted = true;
     draft.value = null;
-    void attempt(api.draftPlan(file, page.value, unit.value)).then((read) => {
+    void attempt(api.draftPlan(file, name, page.value, unit.value)).then((read) => {
       if (!isWanted) return;
       usesPlace.value = read?.is_place_surveyed ?? false;
       if (read === null && !isDxf) done();
@@ -52,7 +53,6 @@ export function DraftPlan({ file, shown, done }: Props) {
   const read = draft.value;
   if (read === null) return <Waiting />;
   const place = placeOf(read);
-  const name = file.name.replace(/\.[^.]*$/, "").slice(0, 80);
   return (
     <>
       {isDxf && (
