@@ -74,6 +74,15 @@ def coded(
     return text
 
 
+def with_code(text: str, code: TextCode) -> str:
+    """The text with a code that was stored or sent beside it."""
+    if not code.code:
+        return text
+    joined = CodedText(text)
+    joined.code = code
+    return joined
+
+
 def code_of_text(text: str) -> TextCode:
     """The code of a text; ``NO_CODE`` where it has none."""
     return text.code if isinstance(text, CodedText) else NO_CODE

@@ -25,6 +25,7 @@ from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.station import alarm_view, anchor_view
 from base_station.views.stored_units import stored_sensors
+from base_station.views.text_code import text_code_views
 from base_station.views.wire import (
     HealthView,
     IncidentView,
@@ -38,6 +39,7 @@ from base_station.views.wire import (
     encoded_trail,
 )
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import code_of_text, coded
 from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
 from shared.messages.station import Action
@@ -46,7 +48,8 @@ _RECENT_NS = 3600 * NS_PER_S  # of trails; alarms raised so long before an incid
 _TRAIL_EVERY_S = 5
 _PUBLISH_EVERY_NS = 2 * NS_PER_S
 _log = logging.getLogger(__name__)
-_STORED = TrustView("red", "as it was last stored; the station is reading its log")
+_STORED_REASON = coded("doubt-stored", "as it was last stored; the station is reading its log")
+_STORED = TrustView("red", str(_STORED_REASON), text_code_views(code_of_text(_STORED_REASON)))
 
 
 class StoredSnapshotSource:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Literal
 
 import msgspec
+
+from shared.coded_text import TextCode, code_of_text
 
 
 class DrawnPicture(msgspec.Struct, frozen=True):
@@ -26,6 +29,15 @@ class Draft(msgspec.Struct, frozen=True, tag="draft"):
     is_place_surveyed: bool = True  # else a suggestion, which a person has to look at
     pages: int = 1  # of the file
     notes: tuple[str, ...] = ()  # for a person: parts of the file that are not in the draft
+    note_codes: tuple[TextCode, ...] = ()  # of ``notes``, in their order
+
+
+def noted(draft: Draft, notes: Iterable[str]) -> Draft:
+    """The draft with notes and their codes."""
+    given = tuple(notes)
+    return msgspec.structs.replace(
+        draft, notes=tuple(map(str, given)), note_codes=tuple(map(code_of_text, given))
+    )
 
 
 class DrawingRefusal(msgspec.Struct, frozen=True, tag="refused"):

@@ -9,8 +9,9 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-from base_station.drawings.draft import METRES_PER_UNIT, Draft, LengthUnit, Options
+from base_station.drawings.draft import METRES_PER_UNIT, Draft, LengthUnit, Options, noted
 from base_station.drawings.shapes import MOST_POINTS, DrawnShape, Point, box_of, plan_of
+from shared.coded_text import coded
 from shared.errors import UserError
 
 _MISSING = (
@@ -49,11 +50,20 @@ def read_dxf(content: bytes, options: Options) -> Draft:
         shape._replace(points=[(x - west, y - south) for x, y in shape.points]) for shape in shapes
     ]
     notes: tuple[str, ...] = (
-        f"Its unit of length is {unit}; it lies with its lower left corner at the origin.",
+        coded(
+            "note-dxf-unit",
+            "Its unit of length is {unit}; it lies with its lower left corner at the origin.",
+            unit=unit,
+        ),
     )
     if not named:
-        notes += ("No layer has the name of walls: every line is taken for one.",)
-    return Draft(plan=plan_of(options.name, placed), notes=notes)
+        notes += (
+            coded(
+                "note-dxf-no-walls",
+                "No layer has the name of walls: every line is taken for one.",
+            ),
+        )
+    return noted(Draft(plan=plan_of(options.name, placed)), notes)
 
 
 def _shapes(layer: str, points: list[Point], named: bool) -> Iterator[DrawnShape]:

@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from base_station.drawings.draft import Draft
+from base_station.drawings.draft import Draft, noted
 from base_station.drawings.shapes import DrawnShape, Point, box_of, plan_of
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -128,10 +129,18 @@ def _draft(name: str, tagged: Iterable[_Tagged]) -> Draft:
     ]
     notes = []
     if left:
-        notes.append(f"{left} of its features are points or of no use to a plan, and left out.")
+        notes.append(
+            coded(
+                "note-features-left-out",
+                "{count} of its features are points or of no use to a plan, and left out.",
+                count=left,
+            )
+        )
     if all(one.kind != "wall" for one in found):
-        notes.append("It has no walls: rooms are drawn, and paths may cross them.")
-    return Draft(plan=plan_of(name, shapes), lat_deg=lat_deg, lon_deg=lon_deg, notes=tuple(notes))
+        notes.append(
+            coded("note-no-walls", "It has no walls: rooms are drawn, and paths may cross them.")
+        )
+    return noted(Draft(plan=plan_of(name, shapes), lat_deg=lat_deg, lon_deg=lon_deg), notes)
 
 
 def _site_point(origin: Anchor, degrees: tuple[float, float]) -> Point:

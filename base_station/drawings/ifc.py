@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from base_station.drawings.draft import Draft, Options
+from base_station.drawings.draft import Draft, Options, noted
 from base_station.drawings.ifc_building import ModelBuilding, building_of
 from base_station.drawings.ifc_place import ModelPlace, place_of
 from base_station.drawings.ifc_plan import DrawnFloors, draw_floors
 from base_station.drawings.ifc_sections import Solid
 from base_station.drawings.shapes import MOST_POINTS, box_of, plan_of
+from shared.coded_text import CodedText, coded
 from shared.errors import UserError
 
 BEGINS = b"ISO-10303-21"
@@ -38,12 +39,16 @@ _NO_STOREY = (
     "the IFC has no storeys (IfcBuildingStorey): export it with them, or print its floors to PDF"
 )
 _NO_WALL = "the IFC has no wall with a shape on any of its storeys; print its floors to PDF"
-_SUGGESTED = (
+_SUGGESTED = coded(
+    "note-suggested",
     "Its place on the Earth is that of its site, which many drawing programs set by themselves: "
-    "look at it before you use it."
+    "look at it before you use it.",
 )
-_NO_PLACE = "It has no place on the Earth: align it by two points."
-_NOT_DRAWN = {"IfcColumn": "columns", "IfcBuildingElementProxy": "elements without a class"}
+_NO_PLACE = coded("note-no-place", "It has no place on the Earth: align it by two points.")
+_NOT_DRAWN = {
+    "IfcColumn": coded("note-columns", "columns"),
+    "IfcBuildingElementProxy": coded("note-no-class", "elements without a class"),
+}
 
 
 def is_zipped_ifc(content: bytes) -> bool:
@@ -100,14 +105,14 @@ def read_ifc(content: bytes, options: Options) -> Draft:
     place, notes = place_of(file, unit_m, (west, south))
     for kind, words in _NOT_DRAWN.items():  # though people may not walk through them
         drawn.left_out[words] += len(file.by_type(kind))
-    return Draft(
+    draft = Draft(
         plan=plan_of(options.name, shapes, heights_m),
         lat_deg=place.lat_deg if place else None,
         lon_deg=place.lon_deg if place else None,
         plan_rotation_rad=place.rotation_rad if place else 0.0,
         is_place_surveyed=place is not None and place.is_surveyed,
-        notes=(*_notes_of(drawn, heights_m), *notes, *_note_of_place(place)),
     )
+    return noted(draft, (*_notes_of(drawn, heights_m), *notes, *_note_of_place(place)))
 
 
 def _is_ifc(entry: zipfile.ZipInfo) -> bool:
@@ -152,18 +157,26 @@ def _solids(file: Any, building: ModelBuilding) -> dict[int, Solid]:
     return solids
 
 
-def _notes_of(drawn: DrawnFloors, heights_m: dict[int, float]) -> list[str]:
-    floors = ", ".join(
-        f"{floor} is {level.name or 'without name'} at {heights_m[floor]:.2f} m"
+def _notes_of(drawn: DrawnFloors, heights_m: dict[int, float]) -> list[CodedText]:
+    floors = ", ".join(  # signs alone: it is the same in every language
+        f"{floor} = {level.name or '?'} ({heights_m[floor]:.2f} m)"
         for floor, level in drawn.levels.items()
     )
-    notes = [f"Its floors: {floors}."]
+    notes = [coded("note-floors", "Its floors: {floors}.", floors=floors)]
     if drawn.unused:
-        names = ", ".join(name or "one without name" for name in drawn.unused)
-        notes.append(f"Storeys without doors, rooms and stairs are left out: {names}.")
-    left_out = [f"{what}: {count}" for what, count in sorted(drawn.left_out.items()) if count]
-    if left_out:
-        notes.append(f"Left out are {'; '.join(left_out)}.")
+        names = ", ".join(name or "?" for name in drawn.unused)
+        notes.append(
+            coded(
+                "note-storeys-left-out",
+                "Storeys without doors, rooms and stairs are left out: {names}.",
+                names=names,
+            )
+        )
+    notes += [
+        coded("note-left-out", "Left out are {elements}: {count}.", elements=elements, count=count)
+        for elements, count in sorted(drawn.left_out.items())
+        if count
+    ]
     return notes
 
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from base_station.drawings.ifc_building import placed_at
 from base_station.drawings.shapes import Point
 from base_station.site.utm import Zone, lat_lon_of, zone_of
+from shared.coded_text import coded
 from shared.geo import Anchor
 
 _NORTHWARDS_M = 100.0  # over which the grid's north is compared with true north
@@ -45,7 +46,13 @@ def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None,
     name = str(crs.get("Name") or "").upper().replace(" ", "")
     zone = zone_of(name)
     if zone is None:
-        return None, (f"Its place is given in the grid {name or 'without name'}, not UTM.",)
+        return None, (
+            coded(
+                "note-other-grid",
+                "Its place is given in the grid {grid}, not UTM.",
+                grid=name or "?",
+            ),
+        )
     turned_rad = math.atan2(found.xao, found.xaa)
     cosine, sine = math.cos(turned_rad), math.sin(turned_rad)
     x, y = origin
@@ -56,7 +63,9 @@ def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None,
         if 100_000.0 <= east_m <= 900_000.0 and math.isfinite(lat_deg):
             grid_rad = _grid_north_rad(zone, east_m, north_m)
             return ModelPlace(lat_deg, lon_deg, grid_rad - turned_rad, is_surveyed=True), ()
-    return None, (f"Its place in {name} lies outside of that zone.",)
+    return None, (
+        coded("note-outside-zone", "Its place in {grid} lies outside of that zone.", grid=name),
+    )
 
 
 def _map_unit_m(crs: dict[str, Any], unit_m: float) -> float:

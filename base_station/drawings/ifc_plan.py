@@ -24,6 +24,7 @@ from base_station.drawings.ifc_sections import (
     wall_lines,
 )
 from base_station.drawings.shapes import DrawnShape, Point
+from shared.coded_text import CodedText, coded
 
 CUT_M = 1.0  # above the floor
 _STOREY_APART_M = 2.0  # a wall of one floor is also one of another that is as far and cut by it
@@ -70,9 +71,9 @@ def draw_floors(building: ModelBuilding, solids: Mapping[int, Solid]) -> DrawnFl
     for element in building.elements:
         found = [solids[part.id()] for part in element.parts if part.id() in solids]
         if not found:
-            left_out[f"{_WORDS[element.kind]} without a shape"] += 1
+            left_out[_without_shape(_WORDS[element.kind])] += 1
         elif not _add(floors, element, found):
-            left_out[f"{_WORDS[element.kind]} {_UNUSED.get(element.kind, _NOT_CUT)}"] += 1
+            left_out[_UNUSED.get(element.kind, _not_cut)(_WORDS[element.kind])] += 1
     used = [floor for floor in floors if floor.is_used]
     kept = used or [floor for floor in floors if floor.walls]
     unused = tuple(floor.level.name for floor in floors if floor not in kept)
@@ -88,18 +89,43 @@ def draw_floors(building: ModelBuilding, solids: Mapping[int, Solid]) -> DrawnFl
 
 
 _WORDS = {
-    "wall": "walls",
-    "door": "doors",
-    "passage": "openings",
-    "stairs": "stairs",
-    "lift": "lifts",
-    "room": "rooms",
+    "wall": coded("note-walls", "walls"),
+    "door": coded("note-doors", "doors"),
+    "passage": coded("note-openings", "openings"),
+    "stairs": coded("note-stairs", "stairs"),
+    "lift": coded("note-lifts", "lifts"),
+    "room": coded("note-rooms", "rooms"),
 }
-_NOT_CUT = f"not at {CUT_M:g} m above a floor"
-_UNUSED = {
-    "stairs": f"lower than {_STEPS_M:g} m",
-    "passage": "without a door that are too small, or begin above the floor",
-}
+
+
+def _without_shape(elements: str) -> CodedText:
+    return coded("note-without-shape", "{elements} without a shape", elements=elements)
+
+
+def _not_cut(elements: str) -> CodedText:
+    return coded(
+        "note-not-cut",
+        "{elements} not at {cut_m:g} m above a floor",
+        elements=elements,
+        cut_m=CUT_M,
+    )
+
+
+def _too_low(elements: str) -> CodedText:
+    return coded(
+        "note-too-low", "{elements} lower than {steps_m:g} m", elements=elements, steps_m=_STEPS_M
+    )
+
+
+def _no_passage(elements: str) -> CodedText:
+    return coded(
+        "note-no-passage",
+        "{elements} without a door that are too small, or begin above the floor",
+        elements=elements,
+    )
+
+
+_UNUSED = {"stairs": _too_low, "passage": _no_passage}
 
 
 def _add(floors: list[_DrawnFloor], element: ModelElement, solids: list[Solid]) -> bool:

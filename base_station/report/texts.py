@@ -200,7 +200,7 @@ def alarm_raised(text: str, level: str) -> str:
 
 def alarm_ended(state: str, text: str, reason: str, note: str, peak: str) -> str:
     """An acknowledgement or a resolution; empty: no reason, no note, nothing measured."""
-    why = REASONS.get(reason, reason.replace("_", " "))
+    why = REASONS.get(reason, "")  # those of the station stand in the place of the author
     words = [f"{state}: {text}", why, note, f"{PEAK} {peak}" if peak else ""]
     return "; ".join(one for one in words if one)
 

@@ -14,7 +14,7 @@ from base_station.storage.db.known_people import PersonLookup, shown_text
 from base_station.storage.db.models import AlarmRow as StoredAlarm
 from base_station.views.alarm_parameters import parameters_view, stored_parameters_view
 from base_station.views.answer import to_ms, to_ms_or_none
-from base_station.views.text_code import text_code_view
+from base_station.views.text_code import text_code_view, text_code_view_or_none
 from base_station.views.units import unit_views
 from base_station.views.wire import (
     AlarmView,
@@ -122,6 +122,7 @@ def _delivery_view(command: SentCommand, delivery: Delivery, people: PersonLooku
         repeated_ms=to_ms_or_none(delivery.repeated_ns),
         ended_ms=to_ms_or_none(delivery.ended_ns),
         signal=delivery.signal,
+        reason_code=text_code_view_or_none(delivery.reason_code),
     )
 
 

@@ -6,5 +6,15 @@ from base_station.views.wire import TextCodeView
 from shared.coded_text import TextCode
 
 
+def text_code_view_or_none(code: TextCode) -> TextCodeView | None:
+    """None where the text has no code."""
+    return text_code_view(code) if code.code else None
+
+
+def text_code_views(code: TextCode) -> tuple[TextCodeView, ...]:
+    """The view of it, or none where the text has no code."""
+    return (text_code_view(code),) if code.code else ()
+
+
 def text_code_view(code: TextCode) -> TextCodeView:
     return TextCodeView(code.code, code.texts, code.numbers)

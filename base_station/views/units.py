@@ -10,13 +10,14 @@ import msgspec
 
 from base_station.core.state import Alarm, Person, StationState, UnitState
 from base_station.core.state.duty import Duty
-from base_station.core.trust.trust import conflicts_of, trust_of
+from base_station.core.trust.trust import Trust, conflicts_of, trust_of
 from base_station.core.units.worn_sensors import DescribedSensor, worn_sensors
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
 from base_station.site.storeys import storey_of
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
 from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.text_code import text_code_views
 from base_station.views.wire import (
     ClockView,
     DutyView,
@@ -30,6 +31,7 @@ from base_station.views.wire import (
     WornSensorView,
 )
 from shared.clock import NS_PER_MS, NS_PER_S
+from shared.coded_text import code_of_text
 from shared.messages import (
     Activity,
     BatteryState,
@@ -105,7 +107,7 @@ def _unit_view(
         to_ms_or_none(place.inside_since_ns),
         _duty_view(state, unit, unit.duty, people) if unit.duty else None,
         tuple([alarm.alarm_id for alarm in open_alarms]),
-        TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
+        _trust_view(trust) if trust.reason else _GREEN,
         _clock_view(unit.heartbeat),
         "cloned-unit" in levels,
         unit.gps.reason if unit.gps else None,
@@ -118,6 +120,10 @@ def _unit_view(
         worn_sensor_views(worn_sensors(unit.description)) if unit.description else (),
         unit.incident_id,
     )
+
+
+def _trust_view(trust: Trust) -> TrustView:
+    return TrustView(trust.level, str(trust.reason), text_code_views(code_of_text(trust.reason)))
 
 
 @lru_cache(maxsize=1000)  # findings are mostly the same, and each change of a unit shows them

@@ -11,6 +11,7 @@ import msgspec
 
 from edge.agent.mayday_progress import MaydayProgress
 from edge.config import POSITION_RATE_HZ
+from shared.coded_text import NO_CODE, code_of_text, coded
 from shared.envelope import Stamper
 from shared.messages import (
     ANSWERED_BY_PRESS,
@@ -27,10 +28,16 @@ logger = logging.getLogger(__name__)
 REMEMBERED = 1000
 UNANSWERED = frozenset({CommandState.RECEIVED, CommandState.NOTIFIED})
 _RATE_SET = "positions at {:g} Hz"
-_NO_POSITIONS = "this unit sends no positions: an agent at the station tracks for it"
-_OTHER_MAYDAY = "the wearer has cancelled this mayday, or called another one since"
-_ALL_CLEAR = "the all clear was given for this evacuation"
-_NO_OUTPUT = "this unit has no sounder and no light"
+_NO_POSITIONS = coded(
+    "refused-no-positions",
+    "this unit sends no positions: an agent at the station tracks for it",
+)
+_OTHER_MAYDAY = coded(
+    "refused-other-mayday",
+    "the wearer has cancelled this mayday, or called another one since",
+)
+_ALL_CLEAR = coded("refused-all-clear", "the all clear was given for this evacuation")
+_NO_OUTPUT = coded("refused-no-output", "this unit has no sounder and no light")
 _BUTTON = "button"  # how the wearer has answered
 _RATE_REPLY = re.compile(r"positions at (\d+(?:\.\d+)?) Hz")
 
@@ -69,19 +76,27 @@ class CommandHandler:
 
     def take(self, command: Command) -> CommandReply:
         reply = self._replies.get(command.command_id)
+        detail: str
         if self._is_over(command):
             state, detail = CommandState.REFUSED, _ALL_CLEAR
         elif reply is None:
             state, detail = self._apply(command)
         else:
-            state, detail = reply.state, reply.detail
+            state, detail = reply.state, reply.reason
         # One that was ended and comes again waits for the wearer again.
         asks = state in UNANSWERED and command.kind in ANSWERED_BY_PRESS
         is_all_clear = command.kind is CommandKind.ALL_CLEAR and state in UNANSWERED
         ended = command.ended_command_id if is_all_clear else ""
         header = self._stamper.header()
         reply = CommandReply(
-            header, command.command_id, state, detail, asks, command.repeats, ended
+            header,
+            command.command_id,
+            state,
+            str(detail),
+            asks,
+            command.repeats,
+            ended,
+            code_of_text(detail),
         )
         self._remember(reply)
         return reply
@@ -99,6 +114,7 @@ class CommandHandler:
                 header=self._stamper.header(),
                 state=CommandState.ACKNOWLEDGED,
                 detail=_BUTTON,
+                text_code=NO_CODE,
                 awaits_wearer=False,
             )
             for reply in self._replies.values()
@@ -173,10 +189,10 @@ class CommandHandler:
         """Reason that the unit does not execute the command; empty: it does."""
         # By the station's own clock alone: a unit whose clock is wrong obeys all the same.
         if 0 < command.expires_utc_ns <= command.header.t_utc_ns:
-            return "it had expired when it was sent"
+            return coded("refused-expired", "it had expired when it was sent")
         match command.kind:
             case CommandKind.UNKNOWN:
-                return "this unit does not know this kind of command"
+                return coded("refused-unknown", "this unit does not know this kind of command")
             case CommandKind.SET_POSITION_RATE:
                 tracks = self._set_position_rate is not None
                 return _out_of_range(command.position_rate_hz) if tracks else _NO_POSITIONS
@@ -191,4 +207,10 @@ def _out_of_range(rate_hz: float) -> str:
     least_hz, most_hz = POSITION_RATE_HZ
     if least_hz <= rate_hz <= most_hz:
         return ""
-    return f"{rate_hz:g} Hz is not between {least_hz:g} and {most_hz:g} Hz"
+    return coded(
+        "refused-rate",
+        "{rate_hz:g} Hz is not between {least_hz:g} and {most_hz:g} Hz",
+        rate_hz=rate_hz,
+        least_hz=least_hz,
+        most_hz=most_hz,
+    )

@@ -58,7 +58,8 @@ class AlarmChange(msgspec.Struct, frozen=True):
     last_raised_ns: int  # when it was raised anew last: worse, or again; or ``raised_ns``
     code: str = ""  # of the sentence in ``text``; empty: of an earlier version
     parameters: AlarmParameters = NO_PARAMETERS  # what the sentence says besides
-    reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
+    # Code of the user's reason for its resolution, or of the cause in ``by``; empty: there is none.
+    reason: str = ""
     note: str = ""  # the user's words about it
     peak: float | None = None  # worst value so far of what the rule measures, in its unit
 

@@ -6,10 +6,12 @@ from enum import IntEnum
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode, with_code
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import command_pb2
 from shared.messages.quantise import unsigned32
+from shared.messages.text_code import get_text_code, put_text_code
 
 
 class CommandKind(IntEnum):
@@ -109,9 +111,15 @@ class CommandReply(msgspec.Struct, frozen=True):
     awaits_wearer: bool = False  # received; the wearer has yet to acknowledge it
     repeats: str = ""  # as in the command
     ended_command_id: str = ""  # of the evacuation that an ALL_CLEAR has ended
+    text_code: TextCode = NO_CODE  # of ``detail``, where it has one
+
+    @property
+    def reason(self) -> str:
+        """The detail with its code."""
+        return with_code(self.detail, self.text_code)
 
     def to_wire(self) -> command_pb2.CommandReply:
-        return command_pb2.CommandReply(
+        wire = command_pb2.CommandReply(
             header=self.header.to_wire(),
             command_id=self.command_id,
             state=int(self.state),  # type: ignore[arg-type]  # stubs want the generated enum
@@ -120,6 +128,9 @@ class CommandReply(msgspec.Struct, frozen=True):
             repeats=self.repeats,
             ended_command_id=self.ended_command_id,
         )
+        if self.text_code.code:
+            put_text_code(wire.text_code, self.text_code)
+        return wire
 
     @staticmethod
     def from_wire(wire: command_pb2.CommandReply) -> CommandReply:
@@ -131,4 +142,5 @@ class CommandReply(msgspec.Struct, frozen=True):
             awaits_wearer=wire.awaits_wearer,
             repeats=wire.repeats,
             ended_command_id=wire.ended_command_id,
+            text_code=get_text_code(wire.text_code),
         )

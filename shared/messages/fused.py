@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import fused_pb2
@@ -14,6 +15,7 @@ from shared.messages.quantise import (
     signed32,
     unsigned32,
 )
+from shared.messages.text_code import get_text_code, put_text_code
 from shared.quality import Quality
 
 
@@ -38,6 +40,7 @@ class FusedPosition(msgspec.Struct, frozen=True, gc=False):
     fuser: str
     since_gps_s: float | None  # None: no fix ever
     floor_probability: float | None = None  # of the floor, where one is known
+    quality_code: TextCode = NO_CODE  # of ``quality_reason``; none of an earlier version
 
     def to_wire(self) -> fused_pb2.FusedPosition:
         wire = fused_pb2.FusedPosition()
@@ -60,6 +63,8 @@ class FusedPosition(msgspec.Struct, frozen=True, gc=False):
             wire.seconds_since_gps, wire.gps_ever = unsigned32(self.since_gps_s, 1.0), True
         if self.floor_probability is not None:
             wire.floor_permille = unsigned32(self.floor_probability, 1e3)
+        if self.quality_code.code:
+            put_text_code(wire.quality_code, self.quality_code)
         return wire
 
     @staticmethod
@@ -83,4 +88,5 @@ class FusedPosition(msgspec.Struct, frozen=True, gc=False):
             fuser=wire.fuser,
             since_gps_s=float(wire.seconds_since_gps) if wire.gps_ever else None,
             floor_probability=wire.floor_permille * 1e-3 if wire.floor_permille else None,
+            quality_code=get_text_code(wire.quality_code),
         )

@@ -16,7 +16,7 @@ import pytest
 from tests.conftest import PROJECT_ROOT
 
 LANGUAGES = ("en", "de", "fr")
-PARTS = ("problems", "unit_faults")
+PARTS = ("problems", "unit_faults", "coded_reasons", "drawing_notes")
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
 _MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 _BRACE = re.compile(r"\{(\w*)|\}")

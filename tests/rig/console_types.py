@@ -25,6 +25,7 @@ from base_station.views.wire import (
     place,
     replay,
     station,
+    text_code,
     trail,
     unit,
 )
@@ -36,7 +37,7 @@ _SOURCES: Final = Path(__file__).resolve().parents[2] / "base_station/console/sr
 WIRE_TS: Final = _SOURCES / "wire.ts"
 ANSWERS_TS: Final = _SOURCES / "answers.ts"
 DEPARTMENT_TS: Final = _SOURCES / "department/answers.ts"
-_WIRE: Final = (unit, alarm, command, incident, place, station, replay, trail, message)
+_WIRE: Final = (text_code, unit, alarm, command, incident, place, station, replay, trail, message)
 _HEAD: Final = """\
 /** Messages of the station to the console, over the WebSocket.
  *

@@ -91,6 +91,7 @@ LIVE_FIELDS: Mapping[str, str] = {
     "ellipse_minor_m": "Shorter semi-axis of it.",
     "ellipse_heading_rad": "Heading of the longer axis.",
     "quality_reason": "Why the quality is not good; empty: it is.",
+    "reason_codes": "Code of the reason, for texts in other languages; empty: it has none.",
     "since_gps_s": "Time since a fix of GPS was used; null: never.",
     "floor_down_m": "Height of that floor, metres below the origin of the incident frame, as "
     "planned or as learnt from where people walk; null: not known.",

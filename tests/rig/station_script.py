@@ -12,6 +12,7 @@ from base_station.fusion import FUSERS
 from shared.channels import COMMAND, OPERATOR, TICK, channel_of
 from shared.clock import NS_PER_S
 from shared.codec import encode
+from shared.coded_text import code_of_text
 from shared.messages import (
     STATION_ID,
     AlarmChange,
@@ -127,7 +128,11 @@ class Script:
     def reply(
         self, unit_id: str, command_id: str, state: CommandState, detail: str = ""
     ) -> list[Output]:
-        return self.say(CommandReply(self.header(unit_id), command_id, state, detail))
+        return self.say(
+            CommandReply(
+                self.header(unit_id), command_id, state, str(detail), text_code=code_of_text(detail)
+            )
+        )
 
     def position(
         self, unit_id: str, north_m: float, east_m: float, **changes: object

@@ -12,9 +12,12 @@ FIELDS: Mapping[str, str] = {
     "PastAlarm.by": "Who acknowledged or resolved it, or the cause that did.",
     "AlarmHistoryEntry.by": "Who made the change; empty: the rule itself.",
     "Resolution.reason": "Why it is over; null: no reason is given.",
-    "AlarmWithLife.reason": "Code of the reason of the user who resolved it; empty: none given.",
-    "PastAlarm.reason": "Code of the reason of the user who resolved it; empty: none given.",
-    "AlarmHistoryEntry.reason": "Code of the reason of the user who resolved it; empty: none.",
+    "AlarmWithLife.reason": "Code of why it was resolved: of the user, or of the text in by; "
+    "empty: none.",
+    "PastAlarm.reason": "Code of why it was resolved: of the user, or of the text in by; "
+    "empty: none.",
+    "AlarmHistoryEntry.reason": "Code of why it was resolved: of the user, or of the text in by; "
+    "empty: none.",
     "peak": "Worst value so far of what the rule measures: degrees Celsius (heat), part of the "
     "heat budget (heat-dose), lowest level (battery), else seconds; null: nothing was measured.",
     "alarm_id": "The same through the alarm's life.",

@@ -39,6 +39,7 @@ FIELDS: Mapping[str, str] = {
     "yet.",
     "CommandView.incident_id": "The incident that was open when it was given; empty: none was.",
     "repeated_ms": "When the order was last sent to the unit again; null: it was not.",
+    "DeliveryView.reason_code": "Code of the reason; null: it has none.",
     "DeliveryView.ended_ms": "When the unit had answered that the order is over; null: not yet.",
     "signal": "How the unit signals its place: sound or light; empty: not known.",
     "CommandView.ended_ms": "When it ended: by an all clear, by being stopped, or with its "

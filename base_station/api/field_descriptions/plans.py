@@ -20,6 +20,10 @@ FIELDS: Mapping[str, str] = {
     "page": "The page of a PDF, from 1.",
     "unit": "Unit of length of a DXF; left out: as the file says.",
     "notes": "What of the file is not in the draft, for a person.",
+    "PlanDraft.note_codes": "Codes of the notes, in their order.",
+    "TextCodeAnswer.code": "Code of the sentence.",
+    "TextCodeAnswer.texts": "Texts in the sentence, by name.",
+    "TextCodeAnswer.numbers": "Numbers in the sentence, by name; units are in the names.",
     # ---- georeference
     "lat_deg": "Latitude of the incident frame's origin (WGS-84), degrees.",
     "lon_deg": "Longitude of the incident frame's origin (WGS-84), degrees.",

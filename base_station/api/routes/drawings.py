@@ -26,6 +26,12 @@ class DrawnPictureAnswer(BaseModel):
     height_px: int
 
 
+class TextCodeAnswer(BaseModel):
+    code: str
+    texts: dict[str, str]
+    numbers: dict[str, float]
+
+
 class PlanDraft(BaseModel):
     picture: DrawnPictureAnswer | None
     plan: dict[str, Any] | None
@@ -35,6 +41,7 @@ class PlanDraft(BaseModel):
     is_place_surveyed: bool
     pages: int
     notes: list[str]
+    note_codes: list[TextCodeAnswer]
 
 
 def _options(

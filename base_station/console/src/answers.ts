@@ -216,6 +216,7 @@ export interface DeliveryView {
   repeated_ms: number | null;
   ended_ms: number | null;
   signal: string;
+  reason_code: TextCodeView | null;
 }
 
 export interface Dismissal {
@@ -644,6 +645,7 @@ export interface PlanDraft {
   is_place_surveyed: boolean;
   pages: number;
   notes: string[];
+  note_codes: TextCodeAnswer[];
 }
 
 export interface PostedSamples {
@@ -834,6 +836,12 @@ export interface StartForm {
   note?: string;
   unit_ids: string[];
   t_ms?: number;
+}
+
+export interface TextCodeAnswer {
+  code: string;
+  texts: Record<string, string>;
+  numbers: Record<string, number>;
 }
 
 export interface TextCodeView {

@@ -7,6 +7,12 @@ import type { Plan } from "./plan/planFile";
 
 export type { Plan };
 
+export interface TextCodeView {
+  code: string;
+  texts: Record<string, string>;
+  numbers: Record<string, number>;
+}
+
 export interface PersonView {
   person_id: string;
   name: string;
@@ -74,6 +80,7 @@ export interface DutyView {
 export interface TrustView {
   level: "green" | "amber" | "red";
   reason: string;
+  reason_codes: TextCodeView[];
 }
 
 export interface PreflightView {
@@ -175,6 +182,7 @@ export interface DeliveryView {
   repeated_ms: number | null;
   ended_ms: number | null;
   signal: "sound" | "light" | "";
+  reason_code: TextCodeView | null;
 }
 
 export interface CommandView {
@@ -331,12 +339,6 @@ export interface ArchiveView {
   copied: number;
   archived_ms: number | null;
   text: string;
-}
-
-export interface TextCodeView {
-  code: string;
-  texts: Record<string, string>;
-  numbers: Record<string, number>;
 }
 
 export interface HealthView {

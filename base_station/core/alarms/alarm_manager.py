@@ -24,7 +24,7 @@ from base_station.core.alarms.thresholds import Thresholds, with_thresholds
 from base_station.core.person_references import without_numbers
 from base_station.core.state import ERASED_TEXT, Alarm, StationState, UnitState
 from shared.clock import NS_PER_MS, NS_PER_S
-from shared.coded_text import TextCode, coded
+from shared.coded_text import TextCode, code_of_text, coded
 from shared.messages import (
     AlarmParameters,
     AlarmState,
@@ -43,7 +43,9 @@ from shared.messages.station import AcknowledgeAlarm, ReportProblem, ResolveAlar
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
-UNIT_REASSIGNED = "handed over"  # an alarm that is not latched ends with the wearing
+UNIT_REASSIGNED = coded(
+    "over-handed-over", "handed over"
+)  # an alarm that is not latched ends with the wearing
 MAX_OPEN_BESIDE = 10  # open ones of one rule and unit, beside the newest
 
 
@@ -120,7 +122,7 @@ class AlarmManager:
         else:
             _end_problem(state, part)
             if standing is not None:
-                yield _resolve(state, standing, "works again")
+                yield _resolve(state, standing, coded("over-works-again", "works again"))
 
     def acknowledge(self, state: StationState, by: str, action: AcknowledgeAlarm) -> Alarm | str:
         """Acknowledge an alarm: gives it, or for a person the reason why it cannot be done."""
@@ -329,7 +331,8 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
 
 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
-    alarm.state, alarm.by = AlarmState.RESOLVED, by
+    alarm.state, alarm.by = AlarmState.RESOLVED, str(by)
+    alarm.reason = code_of_text(by).code or alarm.reason
     alarm.mark_changed(state.t_ns)
     as_it_ended = msgspec.structs.replace(alarm)  # later findings change the newest alone
     state.history = [*state.history[1 - HISTORY :], as_it_ended]

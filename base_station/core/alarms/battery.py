@@ -7,6 +7,7 @@ from typing import Annotated
 
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.messages import AlarmParameters, Message, Status
@@ -32,7 +33,7 @@ class BatteryLow:
             return None
         battery = unit.status.battery
         if battery >= self.low + (self.hysteresis if level else 0.0):
-            return Clear(unit.status_ns, "battery charged or changed")
+            return Clear(unit.status_ns, coded("over-battery", "battery charged or changed"))
         return Finding(
             "low",
             WARNING,

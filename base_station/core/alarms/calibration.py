@@ -8,6 +8,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.config import Within
 from shared.messages import AlarmParameters, Message
 
@@ -32,14 +33,18 @@ class CalibrationPoor:
             return None
         made_s = description.calibrated_s
         if made_s is None:
-            return Clear(unit.last_message_ns, "the unit uses no calibration")
+            return Clear(
+                unit.last_message_ns, coded("over-no-calibration", "the unit uses no calibration")
+            )
         if description.calibration_faults:
             parameters = AlarmParameters(member=unit.name, fault=description.calibration_faults)
             return _finding("poor", parameters, unit.last_message_ns)
         if unit.last_message_ns / NS_PER_S - made_s > self.old_after_days * _DAY_S:
             parameters = AlarmParameters(member=unit.name, calibrated_s=made_s)
             return _finding("old", parameters, unit.last_message_ns)
-        return Clear(unit.last_message_ns, "the unit uses a good calibration")
+        return Clear(
+            unit.last_message_ns, coded("over-calibration-good", "the unit uses a good calibration")
+        )
 
 
 def _finding(level: str, parameters: AlarmParameters, seen_ns: int) -> Finding:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 
 
@@ -40,5 +41,7 @@ class ClonedUnit:
                     onset_ns=max(other.first_live_ns, sender.boots[-1].first_live_ns),
                 )
         return (
-            None if unit.last_message_ns is None else Clear(unit.last_message_ns, "only one speaks")
+            None
+            if unit.last_message_ns is None
+            else Clear(unit.last_message_ns, coded("over-one-speaks", "only one speaks"))
         )

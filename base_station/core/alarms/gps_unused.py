@@ -9,6 +9,7 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict,
 from base_station.core.state import UnitState
 from base_station.fusion.gnss.fix_faults import fault_code
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.config import Within
 from shared.messages import AlarmParameters, Message
 
@@ -30,7 +31,10 @@ class GpsUnused:
         if gps is None or gps.t_ns < unit.began_ns:
             return None
         if gps.faulty_since_ns is None:
-            return Clear(gps.t_ns, "the positions of the receiver are plausible again")
+            return Clear(
+                gps.t_ns,
+                coded("over-gps-plausible", "the positions of the receiver are plausible again"),
+            )
         if gps.t_ns - gps.faulty_since_ns < self.after_s * NS_PER_S:
             return None
         return Finding(

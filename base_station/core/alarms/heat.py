@@ -11,6 +11,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import ADVISORY, EMERGENCY, WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from base_station.core.units.thermal_dose import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
+from shared.coded_text import coded
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.messages import AlarmParameters, Message, Temperature
@@ -42,7 +43,7 @@ class Heat:
         ambient_degc = heat.temperature.ambient_degc
         found = self._level(ambient_degc, level)
         if not found:
-            return Clear(heat.temperature_ns, "cooled down")
+            return Clear(heat.temperature_ns, coded("over-cooled", "cooled down"))
         return Finding(
             found,
             _PRIORITIES[found],

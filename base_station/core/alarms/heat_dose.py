@@ -10,6 +10,7 @@ from typing import Annotated
 
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.config import Within
 from shared.messages import AlarmParameters, Message, Temperature
 
@@ -29,7 +30,7 @@ class HeatDose:
         if heat.temperature is None:
             return None
         if heat.dose < self.used_up:
-            return Clear(heat.temperature_ns, "another incident")
+            return Clear(heat.temperature_ns, coded("over-other-incident", "another incident"))
         is_late = heat.dose - heat.late_dose < self.used_up
         return Finding(
             "used up",

@@ -8,6 +8,7 @@ import msgspec
 
 from base_station.core.alarms.sentences import sentence
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 
 EMERGENCY, WARNING, ADVISORY = 1, 2, 3  # priorities
@@ -37,7 +38,7 @@ class Clear(msgspec.Struct, frozen=True):
     """There is evidence that nothing is the matter."""
 
     seen_ns: int  # station time of the evidence: time passing without news clears nothing
-    by: str  # cause of the resolution
+    by: str  # cause of the resolution, with its code
     at_once: bool = False  # conclusive: the condition need not last
     about: int | None = None  # wearer that the evidence concerns, where that counts
 
@@ -46,7 +47,14 @@ def switched_off(unit: UnitState) -> Clear | None:
     """Verdict of a unit that was switched off in order: its alarm's condition is not expected."""
     if unit.stopped_ns is None:
         return None
-    return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)
+    return Clear(
+        unit.stopped_ns, coded("over-switched-off", "the unit was switched off"), at_once=True
+    )
+
+
+def off_duty(unit: UnitState) -> Clear:
+    """Verdict of a rule about duty where the unit is not worn, or no incident is open."""
+    return Clear(unit.off_duty_ns, coded("over-off-duty", "off duty"))
 
 
 Verdict = Finding | Clear | None  # None: nothing is known either way

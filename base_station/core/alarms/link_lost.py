@@ -8,6 +8,7 @@ from base_station.core.alarms.interface import ADVISORY, WARNING, Clear, Finding
 from base_station.core.state import UnitState
 from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 
 
@@ -27,7 +28,7 @@ class LinkLost:
             return None
         silent_s = (t_ns - unit.last_message_ns) / NS_PER_S
         if silent_s < self.live_within_s:
-            return Clear(unit.last_message_ns, "messages return")
+            return Clear(unit.last_message_ns, coded("over-messages-return", "messages return"))
         if silent_s < self.lost_after_s:
             return None
         stopped = unit.stopped_ns is not None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message, Status
 
 
@@ -23,7 +24,7 @@ class Mayday:
         if call.t_ns is None:
             return None
         if call.cancelled_ns is not None:
-            return Clear(call.cancelled_ns, "cancelled by the wearer")
+            return Clear(call.cancelled_ns, coded("over-cancelled", "cancelled by the wearer"))
         now, before = unit.names_at(call.dated_ns)
         return Finding(
             "mayday",

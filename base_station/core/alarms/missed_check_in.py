@@ -9,10 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from base_station.core.accountability import ANSWER_NS
-from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict
+from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict, off_duty
 from base_station.core.state import UnitState
 from base_station.core.state.duty import Duty
 from shared.clock import NS_PER_S
+from shared.coded_text import code_of_text, coded, with_code
 from shared.messages import AlarmParameters, Message
 
 
@@ -28,10 +29,10 @@ class MissedCheckIn:
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         duty = unit.duty
         if duty is None:
-            return Clear(unit.off_duty_ns, "off duty")
+            return off_duty(unit)
         if t_ns < duty.due_ns:
-            why = f"not overdue; {duty.confirmation_text}"
-            return Clear(duty.counts_from_ns, why, about=unit.wearer.from_ns(t_ns))
+            about = unit.wearer.from_ns(t_ns)
+            return Clear(duty.counts_from_ns, _why_not_overdue(duty), about=about)
         answers_due_ns = [open_request_ns + ANSWER_NS for open_request_ns in duty.open_requests_ns]
         onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
         return Finding(
@@ -53,3 +54,14 @@ def _code(duty: Duty) -> str:
     if duty.confirmation is None:
         return "par-overdue-no-answer-yet" if is_asked else "par-overdue-unconfirmed"
     return "par-overdue-unanswered" if is_asked else "par-overdue"
+
+
+def _why_not_overdue(duty: Duty) -> str:
+    """With the author of the last confirmation, who is a name and no part of the code."""
+    if duty.confirmation is None:
+        code = coded("over-not-overdue", "not overdue; PAR not yet confirmed")
+    elif duty.confirmation.source == "self":
+        code = coded("over-confirmed-self", "not overdue; PAR confirmed by own unit")
+    else:
+        code = coded("over-confirmed-radio", "not overdue; PAR confirmed by radio")
+    return with_code(f"not overdue; {duty.confirmation_text}", code_of_text(code))

@@ -12,6 +12,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import EMERGENCY, WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.messages import AlarmParameters, Message, Status
@@ -38,7 +39,7 @@ class NoMotion:
         motionless_s = unit.status.motionless_s
         seen_ns = unit.status_ns
         if motionless_s < self.pre_alert_s:
-            return Clear(seen_ns, "motion")
+            return Clear(seen_ns, coded("over-motion", "motion"))
         full = motionless_s >= self.alarm_s
         onset_ns = seen_ns - round(motionless_s * NS_PER_S)
         lying_from_ns = onset_ns + round(self.pre_alert_s * NS_PER_S)

@@ -9,6 +9,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.config import Within
 from shared.messages import AlarmParameters, FusedPosition, Message
 from shared.quality import NOT_OF_STEPS, Quality, codes_of
@@ -33,7 +34,7 @@ class PositionLost:
             return None
         seen_ns = fused.header.t_utc_ns
         if place.lost_since_ns is None:
-            return Clear(seen_ns, "the position is known again")
+            return Clear(seen_ns, coded("over-position-known", "the position is known again"))
         if seen_ns - place.lost_since_ns < self.after_s * NS_PER_S:
             return None
         code, parameters = _found(unit, fused)

@@ -8,6 +8,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.config import Within
 from shared.messages import AlarmParameters, Message
 from shared.quality import NOT_OF_STEPS, Quality, Reason, codes_of
@@ -32,7 +33,7 @@ class TrackerDegraded:
         if position.reasons & Reason.NOT_ON_FOOT:
             return None  # the rule ``worn-wrong`` names the cause
         if unit.degraded_since_ns is None:
-            return Clear(unit.position_ns, "the tracker is sure again")
+            return Clear(unit.position_ns, coded("over-tracker-sure", "the tracker is sure again"))
         if unit.position_ns - unit.degraded_since_ns < self.after_s * NS_PER_S:
             return None
         lost = position.path_quality is Quality.LOST

@@ -11,6 +11,7 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict,
 from base_station.core.state import UnitState
 from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 
 
@@ -29,13 +30,17 @@ class TrackerGone:
         if unit.last_message_ns is None:
             return None
         if not unit.is_tracked_remotely:
-            return Clear(unit.last_message_ns, "the unit tracks itself")
+            return Clear(
+                unit.last_message_ns, coded("over-tracks-itself", "the unit tracks itself")
+            )
         off = switched_off(unit)
         if off is not None:
             return off
         last_message_ns = None if unit.tracker is None else unit.tracker.last_message_ns
         if last_message_ns is not None and (t_ns - last_message_ns) / NS_PER_S < self.live_within_s:
-            return Clear(last_message_ns, "its tracking agent speaks again")
+            return Clear(
+                last_message_ns, coded("over-agent-speaks", "its tracking agent speaks again")
+            )
         since_ns = max(
             last_message_ns or 0, unit.boots[-1].first_live_ns
         )  # it may start with the unit

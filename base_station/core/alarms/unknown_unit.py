@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 
 
@@ -22,7 +23,7 @@ class UnknownUnit:
         if unit.last_message_ns is None:
             return None
         if unit.registered:
-            return Clear(unit.last_message_ns, "registered")
+            return Clear(unit.last_message_ns, coded("over-registered", "registered"))
         return Finding(
             "unknown",
             ADVISORY,

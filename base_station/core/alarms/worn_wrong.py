@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
 from base_station.core.state import UnitState
+from shared.coded_text import coded
 from shared.messages import AlarmParameters, Message
 from shared.quality import Reason
 
@@ -28,7 +29,9 @@ class WornWrong:
         if position is None or unit.position_ns < unit.began_ns:
             return None
         if not position.reasons & Reason.NOT_ON_FOOT:
-            return Clear(unit.position_ns, "the unit moves with a foot again")
+            return Clear(
+                unit.position_ns, coded("over-worn-right", "the unit moves with a foot again")
+            )
         return Finding(
             "not-on-foot",
             WARNING,

@@ -13,12 +13,13 @@ from base_station.core.commands import unit_commands
 from base_station.core.state import Alarm, StationState, UnitState
 from base_station.core.state.command import SentCommand
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages import AlarmState, CommandKind
 
 # Alarms about the wearer's own condition.  A PAR and the work limit ask something of the wearer:
 # the operator who deals with them speaks to the wearer anyway.
 RULES_ABOUT_WEARER = frozenset({"fall", "no-motion", "heat", "heat-dose"})
-ALARM_OVER = "the alarm is over, or was raised anew"
+ALARM_OVER = coded("order-alarm-over", "the alarm is over, or was raised anew")
 _LASTS_NS = 3_600 * NS_PER_S  # later it would be of no use to the wearer
 
 
@@ -56,7 +57,7 @@ def withdraw(state: StationState) -> Iterator[SentCommand]:
             continue
         for delivery in command.deliveries.values():
             if command.awaits(delivery):
-                delivery.expired_ns, delivery.reason = state.t_ns, ALARM_OVER
+                delivery.expire(state.t_ns, ALARM_OVER)
                 yield command
 
 

@@ -11,11 +11,12 @@ from collections.abc import Iterable, Iterator
 from base_station.core.state import StationState
 from base_station.core.state.command import Delivery, SentCommand
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages import CommandKind
 from shared.messages.station import SendCommand
 
-ALL_CLEAR = "all clear before an answer"
+ALL_CLEAR = coded("order-all-clear", "all clear before an answer")
 
 
 def give(state: StationState, by: str, action: SendCommand) -> Iterator[SentCommand]:
@@ -77,7 +78,7 @@ def _end_for_all(evacuation: SentCommand, t_ns: int) -> None:
 
 def _stop_waiting(evacuation: SentCommand, delivery: Delivery, t_ns: int) -> None:
     if evacuation.awaits(delivery):
-        delivery.expired_ns, delivery.reason = t_ns, ALL_CLEAR
+        delivery.expire(t_ns, ALL_CLEAR)
 
 
 def _command(

@@ -22,6 +22,7 @@ from base_station.core.state.command import (
     SentCommand,
 )
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages import (
     OF_STATION,
@@ -31,7 +32,7 @@ from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmatio
 
 MAX_OPEN = 50  # and as many again for evacuations, which wait for nothing
 CLOSED_KEPT = 10  # at hand; the log has all of them
-REPLACED = "a later rate replaces it"
+REPLACED = coded("order-replaced", "a later rate replaces it")
 _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
@@ -69,7 +70,8 @@ def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
             continue
         replaced = [one for one in _undelivered(command) if one.unit_id in later.deliveries]
         for delivery in replaced:
-            delivery.refused_ns, delivery.reason = state.t_ns, REPLACED
+            delivery.refused_ns = state.t_ns
+            delivery.set_reason(REPLACED)
         if replaced:
             yield command
 
@@ -130,7 +132,7 @@ def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
             and (is_of_it or state.units[one.unit_id].incident_id == incident_id)
         ]
         for delivery in open_ones:
-            delivery.expired_ns, delivery.reason = state.t_ns, WITHDRAWN
+            delivery.expire(state.t_ns, WITHDRAWN)
         is_standing = is_of_it and command.ended_ns is None
         if is_standing:
             command.ended_ns = state.t_ns

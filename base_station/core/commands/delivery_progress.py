@@ -48,7 +48,8 @@ def note_reply(
             delivery.received_ns = delivery.received_ns or state.t_ns
             acknowledge(delivery, state.t_ns, "self", unit.name_at(event_ns))
         case CommandState.REFUSED if delivery.refused_ns is None and not delivery.reason:
-            delivery.refused_ns, delivery.reason = state.t_ns, reply.detail
+            delivery.refused_ns = state.t_ns
+            delivery.set_reason(reply.reason)
         case _:
             return None
     return command

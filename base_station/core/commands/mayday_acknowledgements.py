@@ -12,11 +12,12 @@ from base_station.core.commands import unit_commands
 from base_station.core.state import Alarm, StationState, UnitState
 from base_station.core.state.command import SentCommand
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages import CommandKind
 
 MAYDAY_RULE = "mayday"
-CANCELLED = "the wearer has cancelled the mayday"
-CALLED_AGAIN = "the wearer has called another mayday"
+CANCELLED = coded("order-mayday-cancelled", "the wearer has cancelled the mayday")
+CALLED_AGAIN = coded("order-mayday-again", "the wearer has called another mayday")
 _LASTS_NS = 86_400 * NS_PER_S  # as long as any order may
 
 
@@ -49,7 +50,7 @@ def withdraw(state: StationState) -> Iterator[SentCommand]:
         for delivery in command.deliveries.values():
             reason = _end_reason(command, state.units[delivery.unit_id])
             if reason and command.awaits(delivery):
-                delivery.expired_ns, delivery.reason = state.t_ns, reason
+                delivery.expire(state.t_ns, reason)
                 yield command
 
 

@@ -15,12 +15,13 @@ from base_station.core.commands.all_clears import ALL_CLEAR
 from base_station.core.commands.order_repeats import command_of, current_id
 from base_station.core.state import StationState
 from base_station.core.state.command import Delivery, Order, SentCommand
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages import Command, CommandKind, CommandReply
 from shared.messages.station import SendCommand
 
-WITHDRAWN = "its incident was closed"
-STOPPED = "stopped at the station"
+WITHDRAWN = coded("order-withdrawn", "its incident was closed")
+STOPPED = coded("order-stopped", "stopped at the station")
 
 
 def stop(state: StationState, action: SendCommand) -> SentCommand:
@@ -33,7 +34,7 @@ def stop(state: StationState, action: SendCommand) -> SentCommand:
     command.ended_ns = state.t_ns
     for delivery in command.deliveries.values():
         if command.awaits(delivery):
-            delivery.expired_ns, delivery.reason = state.t_ns, STOPPED
+            delivery.expire(state.t_ns, STOPPED)
     return command
 
 

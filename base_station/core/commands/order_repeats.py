@@ -34,7 +34,8 @@ def send_again(state: StationState, action: SendCommand) -> SentCommand:
         delivery.repeat_id, delivery.repeated_ns = action.command_id, state.t_ns
         delivery.sent_ns = delivery.received_ns = delivery.notified_ns = None
         delivery.refused_ns = delivery.expired_ns = None
-        delivery.expires_ns, delivery.reason = until_ns, ""
+        delivery.expires_ns = until_ns
+        delivery.set_reason("")
         delivery.can_be_notified = state.units[delivery.unit_id].can_be_notified
     return command
 

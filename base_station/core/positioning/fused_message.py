@@ -8,6 +8,7 @@ from base_station.core.state import StationState, UnitState
 from base_station.core.state.boot_state import BootState
 from base_station.fusion.interface import Estimate
 from base_station.site.storeys import floor_at, floor_probability
+from shared.coded_text import code_of_text, coded
 from shared.messages import FusedPosition, Header
 from shared.quality import DEGRADED, LOST
 
@@ -37,7 +38,7 @@ def fused_message(
         sure = floor_probability(storeys, floor, estimate.down_m, std_down_m)
     quality, reason = estimate.quality, estimate.quality_reason
     if site.plan is not site.placed_plan and quality is not LOST:
-        quality, reason = DEGRADED, "the plan is not placed"
+        quality, reason = DEGRADED, coded("doubt-plan", "the plan is not placed")
     return FusedPosition(  # by place: every position comes through here
         header,
         unit.unit_id,
@@ -53,8 +54,9 @@ def fused_message(
         estimate.heading_std_rad,
         floor,
         quality,
-        reason,
+        str(reason),
         fuser,
         estimate.since_gps_s,
         sure,
+        code_of_text(reason),
     )

@@ -29,7 +29,8 @@ class Alarm(msgspec.Struct):
     lower_since_ns: int | None = None  # time of the first evidence of a lower level
     code: str = ""  # of the sentence in ``text``; empty: of a checkpoint of an earlier version
     parameters: AlarmParameters = NO_PARAMETERS
-    reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
+    # Code of the user's reason for its resolution, or of the cause in ``by``; empty: there is none.
+    reason: str = ""
     note: str = ""  # the user's note
     worst: float | None = None  # value so far of the measure of its rule
     peak: float | None = None  # ``worst`` at the last change, as it is logged and shown

@@ -6,6 +6,7 @@ from typing import Literal
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode, code_of_text
 from shared.messages import ASKS_WEARER, CommandKind
 
 AnsweredBy = Literal["", "self", "radio"]
@@ -35,7 +36,7 @@ class Delivery(msgspec.Struct):
     acknowledged_by: str = ""
     acknowledged_via: AnsweredBy = ""  # the member's own unit, or by radio; empty: not yet
     refused_ns: int | None = None
-    reason: str = ""  # of a refusal
+    reason: str = ""  # of a refusal or a withdrawal
     expired_ns: int | None = None
     notified_ns: int | None = None  # an output of the unit has notified the wearer
     # Whether the unit has an output, as known at the last event; None: unknown.
@@ -47,6 +48,16 @@ class Delivery(msgspec.Struct):
     expires_ns: int | None = None  # of the repeat; None: as the command
     all_clear_id: str = ""  # of the command that has ended this evacuation for the unit
     signal: Signal = ""  # of LOCATE: signals that the wearer and others perceive; empty: unknown
+    reason_code: TextCode = NO_CODE  # of ``reason``; none of a foreign unit
+
+    def set_reason(self, reason: str) -> None:
+        """With its code, where it has one."""
+        self.reason, self.reason_code = str(reason), code_of_text(reason)
+
+    def expire(self, t_ns: int, reason: str) -> None:
+        """End it before its answer."""
+        self.expired_ns = t_ns
+        self.set_reason(reason)
 
 
 class SentCommand(msgspec.Struct):

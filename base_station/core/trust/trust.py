@@ -14,6 +14,7 @@ from base_station.core.state import StationState, UnitState
 from base_station.core.state.trust_tally import LONGEST_S
 from base_station.site.max_travel import RADII_95
 from shared.clock import NS_PER_S
+from shared.coded_text import Measure, coded, with_code
 from shared.messages import FusedPosition
 from shared.quality import Quality
 
@@ -28,7 +29,7 @@ _AMBER_M2 = (AMBER_M / RADII_95) ** 2  # variance
 
 class Trust(msgspec.Struct, frozen=True):
     level: Level
-    reason: str = ""  # for a person; empty: green
+    reason: str = ""  # for a person, with its code; empty: green
     cause: str = ""  # the same without figures, to be counted
 
 
@@ -70,15 +71,17 @@ def conflicts_of(state: StationState) -> Counter[str]:
 
 def _red_causes(unit: UnitState) -> Iterator[Trust]:
     if not unit.registered:
-        yield Trust("red", "not a registered unit: not believed", "not a registered unit")
+        text = coded("doubt-unregistered", "not a registered unit: not believed")
+        yield Trust("red", text, "not a registered unit")
     fused = unit.place.fused
     if fused is None:
-        yield Trust("red", "no position yet", "no position yet")
+        text = coded("doubt-no-position", "no position yet")
+        yield Trust("red", text, "no position yet")
         return
     if unit.link == "lost":
         yield _no_contact("red")
     if fused.quality is Quality.LOST:
-        yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
+        yield _of_quality("red", fused)
     within_m = _within_m(fused)
     if within_m > RED_M:
         yield _imprecise("red", within_m)
@@ -95,23 +98,39 @@ def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
         yield _imprecise("amber", within_m)
     if conflicts:
         which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
-        yield Trust("amber", f"{which} the trail", "a pin contradicts the trail")
+        text = coded("doubt-pins", "{count} the trail", count=Measure(conflicts, which))
+        yield Trust("amber", text, "a pin contradicts the trail")
     if fused.quality is Quality.DEGRADED:
-        yield Trust("amber", fused.quality_reason, _cause_of(fused.quality_reason))
+        yield _of_quality("amber", fused)
     if fused.floor_probability is not None and fused.floor_probability < AMBER_FLOOR:
-        text = f"the floor is only {fused.floor_probability:.0%} sure"
+        text = coded(
+            "doubt-floor",
+            "the floor is only {sure_fraction:.0%} sure",
+            sure_fraction=round(fused.floor_probability, 2),
+        )
         yield Trust("amber", text, "floor not sure")
     if fused.std_down_m > AMBER_DOWN_M:
-        text = f"height only known to {2.0 * fused.std_down_m:.0f} m"
+        text = coded(
+            "doubt-height",
+            "height only known to {within_m:.0f} m",
+            within_m=round(2.0 * fused.std_down_m),
+        )
         yield Trust("amber", text, "height only roughly known")
 
 
 def _no_contact(level: Level) -> Trust:
-    return Trust(level, "no message: shown at its last known position", "no message")
+    text = coded("doubt-no-message", "no message: shown at its last known position")
+    return Trust(level, text, "no message")
 
 
 def _imprecise(level: Level, within_m: float) -> Trust:
-    return Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
+    text = coded("doubt-place", "only known to {within_m:.0f} m", within_m=round(within_m))
+    return Trust(level, text, "place only roughly known")
+
+
+def _of_quality(level: Level, fused: FusedPosition) -> Trust:
+    text = with_code(fused.quality_reason, fused.quality_code)
+    return Trust(level, text, _cause_of(fused.quality_reason))
 
 
 def _within_m(fused: FusedPosition) -> float:

@@ -40,8 +40,8 @@ from base_station.views.wire.station import (
     RadioView,
     RecordingView,
     StandbyView,
-    TextCodeView,
 )
+from base_station.views.wire.text_code import TextCodeView
 from base_station.views.wire.trail import Trail, TrailPoint, encoded_trail
 from base_station.views.wire.unit import (
     ClockView,

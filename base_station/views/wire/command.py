@@ -6,6 +6,7 @@ from typing import Annotated
 
 from base_station.views.answer import Answer
 from base_station.views.wire.schema import one_of
+from base_station.views.wire.text_code import TextCodeView
 
 
 class DeliveryView(Answer, frozen=True):
@@ -29,6 +30,7 @@ class DeliveryView(Answer, frozen=True):
     ended_ms: int | None = None  # the unit has answered that it knows that the order is over
     # Of a LOCATE: how the unit signals its place; empty: not known.
     signal: Annotated[str, one_of("sound", "light", "")] = ""
+    reason_code: TextCodeView | None = None  # of ``reason``, where it has one
 
 
 class CommandView(Answer, frozen=True):

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from base_station.views.answer import Answer
 from base_station.views.wire.schema import one_of
+from base_station.views.wire.text_code import TextCodeView
 
 
 class StandbyView(Answer, frozen=True):
@@ -64,14 +65,6 @@ class ArchiveView(Answer, frozen=True):
     copied: int  # since the station started
     archived_ms: int | None  # when the last one was; null: none since the station started
     text: str  # for a person: why nothing can be copied; empty: all is well
-
-
-class TextCodeView(Answer, frozen=True):
-    """Code and parameters of a sentence, from which a console makes it in its own language."""
-
-    code: str  # empty: there is the sentence alone
-    texts: dict[str, str]  # parameters, by name
-    numbers: dict[str, float]  # with their units in their names
 
 
 class HealthView(Answer, frozen=True):

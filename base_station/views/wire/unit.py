@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from base_station.views.answer import Answer
 from base_station.views.wire.schema import one_of
+from base_station.views.wire.text_code import TextCodeView
 
 Link = Literal["live", "stale", "lost", "never"]
 
@@ -84,6 +85,8 @@ class TrustView(Answer, frozen=True):
 
     level: Annotated[str, one_of("green", "amber", "red")]
     reason: str  # for a person; empty: green
+    # Of ``reason``: one, or none.  Lists go whole in a change, and their parameters differ.
+    reason_codes: tuple[TextCodeView, ...] = ()
 
 
 class PreflightView(Answer, frozen=True):

@@ -1,6 +1,7 @@
 /** The list of all alarms: filters, and the transitions of each.  Pure. */
 import type { AlarmHistoryEntry, AlarmWithLife, ResolutionReason } from "../answers";
-import { label, t } from "../language/translate";
+import { knownLabel, t } from "../language/translate";
+import { codedText } from "./codedText";
 import { duration, minutes, MISSED_CHECK_IN, percent, temperature } from "../format";
 
 /** Why alarms are resolved, in the order of the dialog. */
@@ -58,9 +59,11 @@ export function changeWord(changes: readonly AlarmHistoryEntry[], at: number): s
   return t("alarm_list.now_level", { level: change.level });
 }
 
-/** User or rule, with the reason and the note: "mia: False alarm, stood on a ladder". */
+/** User with reason and note: "mia: False alarm, stood on a ladder"; or what ended it: "cooled down". */
 export function byWords({ by, reason, note }: AlarmHistoryEntry): string {
-  const why = [reason === "" ? "" : label("alarm_reason", reason), note].filter((word) => word !== "");
+  const chosen = knownLabel("alarm_reason", reason);
+  if (chosen === undefined && note === "") return codedText({ code: reason, texts: {}, numbers: {} }, by);
+  const why = [chosen ?? "", note].filter((word) => word !== "");
   return why.length === 0 ? by : `${by}: ${why.join(", ")}`;
 }
 

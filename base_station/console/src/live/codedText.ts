@@ -1,11 +1,12 @@
 /** Texts by the codes and parameters of the station.  Pure. */
 import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
 import type { PartName } from "../language/catalogue";
-import { knownLabel, knownMessage, t } from "../language/translate";
+import { length, listed } from "../language/measures";
+import { knownLabel, knownMessage, label, t } from "../language/translate";
 import type { HealthView, TextCodeView } from "../wire";
 
-/** The parts that have the texts of the station and of its units; each code is in one of them. */
-const PARTS = ["problem", "unit_fault"] as const satisfies readonly PartName[];
+/** The parts with texts of the station and of its units; each code is in one of them. */
+const PARTS = ["problem", "unit_fault", "coded_reason", "drawing_note"] as const satisfies readonly PartName[];
 
 /** The text in the chosen language; the English one where there is no code, as of an earlier version, or one
  * of another version or of a foreign unit. */
@@ -26,11 +27,16 @@ function valuesOf({ texts, numbers }: TextCodeView): Record<string, string | num
   return Object.fromEntries([
     ...Object.entries(texts)
       .filter(([name]) => own(name))
-      .map(([name, text]) => [name, codedText(codeWithin({ code: "", texts, numbers }, name), text)]),
+      .map(([name, text]) => [name, inWords(name, text, codeWithin({ code: "", texts, numbers }, name))]),
     ...Object.entries(numbers)
       .filter(([name]) => own(name))
       .map(([name, value]) => [name, shown(name, value)]),
   ]);
+}
+
+function inWords(name: string, text: string, code: TextCodeView): string {
+  if (name !== "tracker_reasons") return codedText(code, text);
+  return listed(text.split(",").map((reason) => label("tracker_reason", reason)));
 }
 
 /** The code of a parameter: "reason:" has it, "reason:away_s" a parameter of its own. */
@@ -52,6 +58,7 @@ function shown(name: string, value: number): string | number {
   if (name.endsWith("_mb")) return bytes(value * 1e6);
   if (name.endsWith("_fraction")) return percent(value);
   if (name.endsWith("_degc")) return temperature(value);
+  if (name.endsWith("_m")) return length(value, 0);
   return name === "minutes" ? minutes(value * 60_000) : value;
 }
 

@@ -6,6 +6,7 @@ import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { centring, openDialog, pane, select, selectedUnit } from "../uiState";
 import { isOfAnother } from "../live/alarms";
+import { codedText } from "../live/codedText";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { OLD_MS } from "../plan/ellipse";
@@ -221,7 +222,8 @@ function saysOverdue(alarm: AlarmView, unit: UnitView): boolean {
 /** Quality of the position: empty while it is good.  A unit that was switched off is not doubted for its
  * silence; its position shows the age. */
 function Trust({ unit }: { unit: UnitView }) {
-  const { level, reason } = unit.trust;
+  const { level, reason_codes: codes } = unit.trust;
+  const reason = codedText(codes[0], unit.trust.reason);
   const off = unit.switched_off && unit.link !== "live";
   if (unit.position === null || level === "green" || off) return null;
   const word = t(level === "red" ? "card.unreliable" : "card.uncertain");

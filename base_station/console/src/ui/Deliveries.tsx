@@ -1,6 +1,7 @@
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { CANNOT_BE_NOTIFIED, commandWord, mayAnswerByRadio, progress, shownState, unanswered, unansweredFirst } from "../live/commands";
+import { codedText } from "../live/codedText";
 import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { confirmAnswer } from "../undo";
@@ -73,7 +74,9 @@ function Answer({ command, delivery, place, picture }: AnswerProps) {
   }
   const state = shownState(command, delivery);
   if (state === "ended") return null;
-  if (reason !== "" && state !== CANNOT_BE_NOTIFIED) return <>{reason}</>;
+  if (reason !== "" && state !== CANNOT_BE_NOTIFIED) {
+    return <>{codedText(delivery.reason_code ?? undefined, reason)}</>;
+  }
   if (!mayAnswerByRadio(command, delivery) || !mayAct.value) return null;
   return (
     <span class="answered">

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
+import { codedText } from "../live/codedText";
 import { placeWords } from "../plan/anchor";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
@@ -21,6 +22,7 @@ const NOTHING: api.PlanDraft = {
   is_place_surveyed: false,
   pages: 1,
   notes: [],
+  note_codes: [],
 };
 
 interface Props {
@@ -78,9 +80,9 @@ export function DraftPlan({ file, shown, done }: Props) {
           </select>
         </label>
       )}
-      {read.notes.map((note) => (
+      {read.notes.map((note, at) => (
         <p key={note} class="warned">
-          {note}
+          {codedText(read.note_codes[at], note)}
         </p>
       ))}
       {read.picture !== null && (

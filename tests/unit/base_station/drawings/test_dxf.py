@@ -58,6 +58,7 @@ def test_without_a_layer_of_walls_every_line_is_one_and_it_is_noted() -> None:
     draft, features = read(drawing(6, 1.0, wall_layer="0"))
     assert [one["properties"]["kind"] for one in features].count("wall") == 3
     assert any("No layer" in note for note in draft.notes)
+    assert [one.code for one in draft.note_codes] == ["note-dxf-unit", "note-dxf-no-walls"]
 
 
 @pytest.mark.parametrize(

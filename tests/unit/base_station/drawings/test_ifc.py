@@ -60,7 +60,7 @@ def test_storeys_are_floors_in_metres_whatever_the_schema_and_the_unit(
     corners = outline["geometry"]["coordinates"][0]
     assert sorted(map(tuple, corners))[0] == pytest.approx((0.0, 0.0), abs=0.01)
     assert sorted(map(tuple, corners))[-1] == pytest.approx((12.0, 8.0), abs=0.01)
-    assert "Its floors: 0 is Ground floor at 0.00 m, 1 is Upper floor at 3.00 m." in draft.notes
+    assert "Its floors: 0 = Ground floor (0.00 m), 1 = Upper floor (3.00 m)." in draft.notes
     assert "Storeys without doors, rooms and stairs are left out: Roof." in draft.notes
     assert "Left out are columns: 1." in draft.notes
 

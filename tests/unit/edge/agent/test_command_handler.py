@@ -116,4 +116,6 @@ def test_unit_without_outputs_refuses_to_signal_its_place(rates):
     assert (reply.state, reply.detail) == (
         CommandState.REFUSED, "this unit has no sounder and no light"
     )  # fmt: skip
+    assert reply.text_code.code == "refused-no-output"
+    assert handler.take(command(CommandKind.LOCATE)).text_code == reply.text_code, "a repeat, too"
     assert handler.take(command(CommandKind.EVACUATE, "c2")).state is CommandState.RECEIVED

@@ -27,6 +27,8 @@ import { route } from "./rescue";
 import { people_list, person, people_import, par, rescue } from "./roster";
 import { crew, enrolment, draft, erase } from "./setup";
 import { station, forwarder, health, connection, systems, archive } from "./station";
+import { coded_reason } from "./coded_reasons";
+import { drawing_note } from "./drawing_notes";
 import { unit_fault } from "./unit_faults";
 import { sound, standby, away, waiting, wall } from "./stations";
 
@@ -120,6 +122,8 @@ export const de: Catalogue = {
   archive,
   timeline,
   unit_fault,
+  coded_reason,
+  drawing_note,
   token,
   tracker,
   tracker_reason,

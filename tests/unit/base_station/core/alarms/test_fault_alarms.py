@@ -64,6 +64,16 @@ def test_fault_of_a_foreign_unit_is_an_alarm_with_its_text_alone(script: Script)
     assert (given.fault, given.fault_code) == ("the accelerometer is stuck", None)
 
 
+def test_what_ended_an_alarm_has_a_code_beside_its_text(script: Script) -> None:
+    script.act(ReportProblem("log", "the disk is full"))
+    script.act(ReportProblem("log", ""))
+    ended = script.alarms[-1]
+    assert (ended.by, ended.reason) == ("works again", "over-works-again")
+    script.act(ReportProblem("log", "the disk is full"))
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, "mended", reason="cause_removed"))
+    assert script.alarms[-1].reason == "cause_removed"
+
+
 def fault_texts(script: Script) -> set[str]:
     """Texts of the open fault alarms."""
     alarms = script.pipeline.state.alarms.values()

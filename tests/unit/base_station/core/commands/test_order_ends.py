@@ -11,6 +11,7 @@ from base_station.core.events import CommandChanged, Refused
 from base_station.core.state.command import Delivery, Order
 from shared.channels import COMMAND
 from shared.codec import encode
+from shared.coded_text import NO_CODE, coded
 from shared.messages import STATION_ID, Command, CommandKind, CommandState
 from shared.messages.station import (
     CloseIncident,
@@ -173,3 +174,22 @@ def test_only_an_active_signal_is_stopped(kind: CommandKind) -> None:
     for command_id in ("c1", "none"):
         (refused,) = script.act(stop(command_id))
         assert isinstance(refused, Refused)
+
+
+def test_reason_of_a_refusal_keeps_the_code_of_the_unit_and_a_foreign_one_has_none() -> None:
+    script = sent(CommandKind.LOCATE)
+    script.reply(U, "c1", CommandState.REFUSED, coded("refused-no-output", "no sounder"))
+    delivery = script.pipeline.state.commands["c1"].deliveries[U]
+    assert (delivery.reason, delivery.reason_code.code) == ("no sounder", "refused-no-output")
+    foreign = sent(CommandKind.LOCATE)
+    foreign.reply(U, "c1", CommandState.REFUSED, "kaputt")
+    delivery = foreign.pipeline.state.commands["c1"].deliveries[U]
+    assert (delivery.reason, delivery.reason_code) == ("kaputt", NO_CODE)
+
+
+def test_withdrawn_order_has_the_code_of_its_reason() -> None:
+    script = sent()
+    script.act(CloseIncident("i1"))
+    delivery = script.pipeline.state.commands["c1"].deliveries[U]
+    assert delivery.reason == "its incident was closed"
+    assert delivery.reason_code.code == "order-withdrawn"

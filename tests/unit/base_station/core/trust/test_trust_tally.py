@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.core.trust.trust import trust_of
+from shared.coded_text import code_of_text
 from shared.messages import EventKind
 from shared.messages.station import Assign, CloseIncident, OpenIncident
 from tests.rig.station_script import Script
@@ -82,3 +84,12 @@ def test_time_without_the_station_has_no_light(
     script.tick()
     tally = script.pipeline.state.units["FF-01"].trust
     assert tally.amber_s + tally.red_s == before + seen_s
+
+
+def test_reason_of_the_light_has_its_code(script: Script) -> None:
+    unit = script.pipeline.state.units["FF-01"]
+    assert code_of_text(trust_of(unit, 0).reason).code == "doubt-no-position"
+    script.wait(20.0, lambda: send_messages(script))
+    trust = trust_of(unit, 0)
+    assert trust.reason == "start not known: shown about the unit's own start"
+    assert code_of_text(trust.reason).code == "doubt-start"
