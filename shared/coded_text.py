@@ -7,7 +7,7 @@ one template, and its placeholders are the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import LiteralString, NamedTuple
 
 import msgspec
@@ -92,6 +92,22 @@ def text_of_error(error: Exception) -> str:
     """The text of an error, with its code where it was raised with a coded text."""
     first = error.args[0] if error.args else ""
     return first if isinstance(first, CodedText) else str(error)
+
+
+def text_with_code(text: str, code: TextCode) -> str:
+    """The text, as it was before its code and it were sent apart."""
+    if code == NO_CODE:
+        return text
+    again = CodedText(text)
+    again.code = code
+    return again
+
+
+def map_texts(text: str, change: Callable[[str], str]) -> str:
+    """The text as ``change`` makes it, and so the texts among its parameters."""
+    code = code_of_text(text)
+    texts = {name: change(one) for name, one in code.texts.items()}
+    return text_with_code(change(text), msgspec.structs.replace(code, texts=texts))
 
 
 def join_texts(texts: Iterable[str]) -> str:

@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from pwdlib import PasswordHash
 
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MIN_PASSWORD, MAX_PASSWORD = 10, 256
@@ -32,9 +33,21 @@ class Passwords:
     def hash(self, password: str) -> str:
         """UserError where it is too short to be one, or longer than what is read at a login."""
         if len(password) < MIN_PASSWORD:
-            raise UserError(f"a password needs at least {MIN_PASSWORD} characters")
+            raise UserError(
+                coded(
+                    "password-too-short",
+                    "a password needs at least {least} characters",
+                    least=MIN_PASSWORD,
+                )
+            )
         if len(password) > MAX_PASSWORD:
-            raise UserError(f"a password has at most {MAX_PASSWORD} characters")
+            raise UserError(
+                coded(
+                    "password-too-long",
+                    "a password has at most {most} characters",
+                    most=MAX_PASSWORD,
+                )
+            )
         return self._worker.submit(self._hasher.hash, password).result()
 
     def is_valid(self, password: str, stored: str | None) -> bool:

@@ -7,6 +7,7 @@ from enum import IntEnum
 
 import msgspec
 
+from shared.coded_text import coded
 from shared.errors import UserError
 
 # No name has these: controls, ends of lines, changes of direction, characters invalid in XML.
@@ -17,7 +18,12 @@ _USERNAME = re.compile(rf"(?!\.\.?$)(?=.*\S)[^/\ud800-\udfff{BARRED}]{{1,80}}")
 def require_username(username: str) -> None:
     """UserError where it cannot be used to log in, or in an address of the API."""
     if _USERNAME.fullmatch(username) is None:
-        raise UserError("a user's name is one line of 1 to 80 plain characters, without '/'")
+        raise UserError(
+            coded(
+                "username-unfit",
+                "a user's name is one line of 1 to 80 plain characters, without '/'",
+            )
+        )
 
 
 class Role(IntEnum):
@@ -37,7 +43,14 @@ class Role(IntEnum):
             return Role[word.upper()]
         except KeyError:
             known = ", ".join(role.word for role in Role)
-            raise UserError(f"there is no role {word!r}; roles are {known}") from None
+            raise UserError(
+                coded(
+                    "role-unknown",
+                    "there is no role {role!r}; roles are {known}",
+                    role=word,
+                    known=known,
+                )
+            ) from None
 
 
 class Principal(msgspec.Struct, frozen=True):

@@ -57,7 +57,7 @@ class AdmissionMiddleware:
             await self._app(scope, receive, send)
             return
         headers = {**(refusal.headers or {}), "Connection": "close"}
-        answer = problem_response(refusal.status_code, str(refusal.detail), headers)
+        answer = problem_response(refusal.status_code, refusal.detail, headers)
         await answer(scope, receive, send)
 
     async def _read_in_turn(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -18,10 +18,15 @@ from starlette.requests import HTTPConnection
 
 from base_station.accounts.principals import Principal, Role
 from base_station.api.problems import Problem
+from base_station.api.refusals import ONLY_REPLAYS
 from base_station.api.services import Logins, LoginServices, login_services_of
+from shared.coded_text import coded
 
 COOKIE = "muster_session"
-CHANGE_FIRST = "Change your password first: this one was generated, and is written in a file."
+CHANGE_FIRST = coded(
+    "password-generated",
+    "Change your password first: this one was generated, and is written in a file.",
+)
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 # Requests that a station which changes nothing allows all the same: log in, look, and make it lead.
 _ALLOWED_READ_ONLY = ("login", "logout", "replays", "standby")
@@ -73,10 +78,18 @@ def check_origin(connection: HTTPConnection) -> None:
     if connection.scope.get("method", "GET") in _SAFE_METHODS:
         return
     if not is_own_origin(connection):
-        raise Problem(403, "This was asked by a page that is not the station's own.")
+        raise Problem(
+            403, coded("foreign-page", "This was asked by a page that is not the station's own.")
+        )
     is_by_cookie = COOKIE in connection.cookies and _token_of(connection) is None
     if is_by_cookie and "origin" not in connection.headers:
-        raise Problem(403, "A browser's request must name its origin; programs use an API token.")
+        raise Problem(
+            403,
+            coded(
+                "origin-missing",
+                "A browser's request must name its origin; programs use an API token.",
+            ),
+        )
 
 
 def check_leads(connection: HTTPConnection) -> None:
@@ -90,10 +103,12 @@ def check_leads(connection: HTTPConnection) -> None:
     if resource in _ALLOWED_READ_ONLY:
         return
     if services.is_replay_only:
-        raise Problem(409, "This station only replays; nothing can be changed here.")
+        raise Problem(409, ONLY_REPLAYS)
     refusal = None if services.ha_status is None else services.ha_status.refusal()
     if refusal is not None:
-        raise Problem(503, f"Nothing was changed: {refusal}.")
+        raise Problem(
+            503, coded("not-in-charge", "Nothing was changed: {reason}.", reason=str(refusal))
+        )
 
 
 def _authenticated(
@@ -108,7 +123,15 @@ def _authenticated(
     tags = request.scope["route"].tags
     if not scope_covers(principal, tags):
         allowed = ", ".join(sorted(principal.scopes))
-        raise Problem(403, f"This token is for {allowed}, not for {', '.join(tags)}.")
+        raise Problem(
+            403,
+            coded(
+                "token-scope",
+                "This token is for {allowed}, not for {wanted}.",
+                allowed=allowed,
+                wanted=", ".join(tags),
+            ),
+        )
     is_password_change = "login" in tags or request.scope["route"].path == "/me/password"
     if must_change_password(principal, services) and not is_password_change:
         raise Problem(403, CHANGE_FIRST)
@@ -121,7 +144,7 @@ def must_change_password(principal: Principal, services: LoginServices) -> bool:
 
 
 def unauthenticated() -> Problem:
-    return Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
+    return Problem(401, coded("login-first", "Log in first."), {"WWW-Authenticate": "Bearer"})
 
 
 Viewer = Annotated[Principal, Depends(_authenticated)]
@@ -143,7 +166,14 @@ def require_role(principal: Principal, role: Role) -> Principal:
     """Gives the principal, who has this role or a higher one.  Problem 403."""
     if principal.role < role:
         raise Problem(
-            403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
+            403,
+            coded(
+                "role-too-low",
+                "This needs the role {needed}; {user} is {role}.",
+                needed=role.word,
+                user=principal.username,
+                role=principal.role.word,
+            ),
         )
     return principal
 

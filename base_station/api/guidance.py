@@ -21,6 +21,7 @@ from base_station.api.problems import Problem
 from base_station.api.route_answers import RouteAnswer, find_routes
 from base_station.api.services import Services
 from base_station.views.wire import Snapshot
+from shared.coded_text import coded
 from shared.errors import MusterError
 from shared.messages import CommandKind
 from shared.messages.station import SendCommand
@@ -67,7 +68,14 @@ class Guidance:
         guide = Guide(rescuer_id, unit_id, by, _incident_id(snapshot), has_alarm)
         with self._lock:
             if len(self._guides) >= MOST_GUIDES and rescuer_id not in self._guides:
-                raise Problem(409, f"{MOST_GUIDES} rescuers are guided; end some first.")
+                raise Problem(
+                    409,
+                    coded(
+                        "guides-too-many",
+                        "{most} rescuers are guided; end some first.",
+                        most=MOST_GUIDES,
+                    ),
+                )
         _send_piece(station, snapshot, guide, route, send)
         with self._lock:
             self._guides[rescuer_id] = guide

@@ -10,6 +10,7 @@ import warnings
 
 from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
 
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 MAX_BYTES = 10_000_000
@@ -37,14 +38,22 @@ _EXIF_TRANSPOSITIONS: dict[
 def normalize_photo(upload: bytes) -> tuple[bytes, str]:
     """A square JPEG and its hash.  Raises ConfigError with the fault of the upload."""
     if len(upload) > MAX_BYTES:
-        raise ConfigError(f"the photo is larger than {MAX_BYTES // 1_000_000} MB")
+        raise ConfigError(
+            coded(
+                "photo-too-many-bytes",
+                "the photo is larger than {most_mb} MB",
+                most_mb=MAX_BYTES // 1000000,
+            )
+        )
     try:
         with warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning):
             picture = _square(upload)
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         raise ConfigError(_too_many_pixels()) from None
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
-        raise ConfigError("the photo cannot be read; send a JPEG, PNG or WebP file") from error
+        raise ConfigError(
+            coded("photo-unreadable", "the photo cannot be read; send a JPEG, PNG or WebP file")
+        ) from error
     written = io.BytesIO()
     picture.save(written, "JPEG", quality=85)
     jpeg = written.getvalue()

@@ -12,6 +12,7 @@ from fastapi import Depends, Request
 from base_station.api.attempt_limiter import AttemptLimiter
 from base_station.api.problems import Problem
 from base_station.security.networks import network_of
+from shared.coded_text import coded
 
 _MAX_PER_ACCOUNT_AND_NETWORK = 10  # a minute: one name from one place
 _MAX_PER_NETWORK = 60  # any name from one place
@@ -98,7 +99,11 @@ class LoginThrottle:
 
 
 def too_many_attempts() -> Problem:
-    return Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
+    return Problem(
+        429,
+        coded("login-too-often", "Too many tries to log in; wait a minute."),
+        {"Retry-After": "60"},
+    )
 
 
 def throttle_of(request: Request) -> LoginThrottle:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from base_station.api.problems import Problem
 from base_station.api.services import Services
 from base_station.views.wire import IncidentView
+from shared.coded_text import coded
 
 
 def open_incidents(station: Services) -> list[IncidentView]:
@@ -21,7 +22,14 @@ def open_incident(station: Services, incident_id: str) -> IncidentView | None:
 def open_or_404(station: Services, incident_id: str) -> IncidentView:
     found = open_incident(station, incident_id)
     if found is None:
-        raise Problem(404, f"There is no open incident {incident_id}.")
+        raise Problem(
+            404,
+            coded(
+                "incident-not-among-open",
+                "There is no open incident {incident}.",
+                incident=incident_id,
+            ),
+        )
     return found
 
 
@@ -34,5 +42,12 @@ def site_incident_id(station: Services, incident_id: str | None) -> str:
     opened = open_incidents(station)
     if len(opened) > 1:
         names = ", ".join(f"{one.name} ({one.incident_id})" for one in opened)
-        raise Problem(409, f"Several incidents are open; name one in incident_id: {names}.")
+        raise Problem(
+            409,
+            coded(
+                "incident-not-named",
+                "Several incidents are open; name one in incident_id: {incidents}.",
+                incidents=names,
+            ),
+        )
     return opened[0].incident_id if opened else ""

@@ -18,6 +18,7 @@ import pydantic
 
 from base_station.api.forms import Name, ShortText
 from base_station.storage.db.people_import import same_name
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MOST_PEOPLE = 2000  # of one file: a console lists all of them
@@ -67,14 +68,24 @@ def read_people(content: bytes) -> PeopleFile:
     except csv.Error as error:
         line = rows.line_num + skipped
         raise UserError(
-            f"line {line} of the file cannot be read: {error}; look for a quotation mark that is "
-            "not closed"
+            coded(
+                "csv-line-unreadable",
+                "line {line} of the file cannot be read: {error}; look for a quotation "
+                "mark that is not closed",
+                line=line,
+                error=str(error),
+            )
         ) from error
 
 
 def _text_of(content: bytes) -> str:
     if content.startswith(_WORKBOOK):
-        raise UserError("this file is a workbook; save it as CSV in the spreadsheet, and send that")
+        raise UserError(
+            coded(
+                "csv-is-workbook",
+                "this file is a workbook; save it as CSV in the spreadsheet, and send that",
+            )
+        )
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         with suppress(UnicodeDecodeError):
             return content.decode("utf-16")
@@ -106,7 +117,7 @@ def _numbered(rows: Iterator[list[str]], skipped: int) -> Iterator[tuple[int, li
 def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
     titled = next(rows, None)
     if titled is None:
-        raise UserError("the file is empty")
+        raise UserError(coded("csv-empty", "the file is empty"))
     columns = _columns(*titled)
     people: list[CsvPerson] = []
     faults: list[CsvFault] = []
@@ -114,8 +125,12 @@ def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
     for number, (line, cells) in enumerate(rows):
         if number >= MOST_PEOPLE:
             raise UserError(
-                f"the file has more than {MOST_PEOPLE} people; send those who may come to one "
-                "incident, or several files"
+                coded(
+                    "csv-too-many",
+                    "the file has more than {most} people; send those who may come to one "
+                    "incident, or several files",
+                    most=MOST_PEOPLE,
+                )
             )
         person = _person(line, cells, columns)
         if isinstance(person, CsvFault):
@@ -128,7 +143,9 @@ def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
         else:
             people.append(person)
     if not people and not faults:
-        raise UserError("the file has a line of column names and no person below it")
+        raise UserError(
+            coded("csv-nobody", "the file has a line of column names and no person below it")
+        )
     return PeopleFile(people, faults)
 
 
@@ -141,16 +158,27 @@ def _columns(line: int, titles: list[str]) -> dict[str, int]:
             continue
         if column in found:
             raise UserError(
-                f"line {line} of the file has two columns of one meaning: {titles[found[column]]} "
-                f"and {title}; remove one"
+                coded(
+                    "csv-columns-alike",
+                    "line {line} of the file has two columns of one meaning: {first} and "
+                    "{second}; remove one",
+                    line=line,
+                    first=titles[found[column]],
+                    second=title,
+                )
             )
         found[column] = number
     if "first" in found and "name" in found and "last" not in found:
         found["last"] = found.pop("name")  # "Name, Vorname" and "Nom, Prénom"
     if "name" not in found and "last" not in found:
         raise UserError(
-            f"line {line} of the file names no column of names; its first line must have one that "
-            "is called Name (or First name and Last name), and may have Crew and Role"
+            coded(
+                "csv-no-names",
+                "line {line} of the file names no column of names; its first line must "
+                "have one that is called Name (or First name and Last name), and may have "
+                "Crew and Role",
+                line=line,
+            )
         )
     return found
 

@@ -20,6 +20,7 @@ from base_station.api.forms import (
     MAX_SAMPLES_BYTES,
     MAX_UPLOAD_BYTES,
 )
+from shared.coded_text import code_of_text, join_texts, text_of_error
 from shared.errors import ArchiveError, ConfigError, LogError, MusterError, StoreError, UserError
 
 PROBLEM_MEDIA_TYPE = "application/problem+json"
@@ -39,6 +40,8 @@ class ProblemDocument(BaseModel):
     title: str
     status: int
     detail: str
+    code: str
+    parameters: dict[str, str | float]
 
 
 class Problem(HTTPException):
@@ -64,8 +67,14 @@ def problem_response(
     headers: Mapping[str, str] | None = None,
     members: Mapping[str, object] | None = None,
 ) -> JSONResponse:
+    coded = code_of_text(detail)
     document = ProblemDocument(
-        type="about:blank", title=HTTPStatus(status).phrase, status=status, detail=detail
+        type="about:blank",
+        title=HTTPStatus(status).phrase,
+        status=status,
+        detail=str(detail),
+        code=coded.code,
+        parameters={**coded.texts, **coded.numbers},
     )
     return JSONResponse(
         {**(members or {}), **document.model_dump()},
@@ -86,7 +95,7 @@ def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None
         if error.status_code == 405:
             return _method_refused(request, allowed_methods(request.url.path))
         is_unreadable = error.status_code == 400 and not isinstance(error, Problem)
-        detail = _expected_body(request) if is_unreadable else str(error.detail)
+        detail = _expected_body(request) if is_unreadable else error.detail
         members = error.members if isinstance(error, Problem) else None
         return problem_response(error.status_code, detail, error.headers, members)
 
@@ -98,14 +107,14 @@ def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None
             else error_sentence(one)
             for one in error.errors()
         )
-        return problem_response(422, "; ".join(sentences))
+        return problem_response(422, join_texts(sentences))
 
     @app.exception_handler(MusterError)
     async def failed(request: Request, error: MusterError) -> JSONResponse:
         status = _status_of(error)
         if status >= 500:  # a fault of the station
             _log.warning("%s %s: %s", request.method, request.url.path, error)
-        return problem_response(status, str(error))
+        return problem_response(status, text_of_error(error))
 
 
 class UnhandledErrorMiddleware:

@@ -10,7 +10,11 @@ from contextlib import contextmanager, suppress
 from base_station.api.problems import Problem
 from base_station.api.services import Services
 from base_station.views.wire import Snapshot
+from shared.coded_text import coded
 from shared.errors import StoreError, UserError
+
+NO_PERSON = coded("person-unknown", "There is no such person.")
+ONLY_REPLAYS = coded("only-replays", "This station only replays; nothing can be changed here.")
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from base_station.routing.words import line_text, route_text
 from base_station.site.max_travel import RADII_95
 from base_station.views.answer import Answer
 from base_station.views.wire import PositionView, Snapshot, UnitView
+from shared.coded_text import coded
 
 _MISSED_CHECK_IN = MissedCheckIn().name  # a member without an answer is not down yet
 HEADING_KNOWN_RAD = 0.8  # standard deviation up to which left and right mean something
@@ -59,7 +60,9 @@ def find_routes(station: Services, unit_id: str, rescuer_id: str | None) -> list
     Problem 404 for an unknown unit, 409 for one without a position and for the member itself.
     """
     if rescuer_id == unit_id:
-        raise Problem(409, "The rescuer is the member: name another rescuer.")
+        raise Problem(
+            409, coded("rescuer-is-member", "The rescuer is the member: name another rescuer.")
+        )
 
     def may_go(snapshot: Snapshot) -> Sequence[str]:
         return rescuers(snapshot, unit_id) if rescuer_id is None else (rescuer_id,)
@@ -74,10 +77,15 @@ def find_routes(station: Services, unit_id: str, rescuer_id: str | None) -> list
 
 def _position(units: Mapping[str, UnitView], unit_id: str) -> PositionView:
     if unit_id not in units:
-        raise Problem(404, "There is no such unit.")
+        raise Problem(404, coded("unit-unknown", "There is no such unit."))
     position = units[unit_id].position
     if position is None:
-        raise Problem(409, f"{unit_id} has no position: none was received.")
+        raise Problem(
+            409,
+            coded(
+                "unit-without-position", "{unit} has no position: none was received.", unit=unit_id
+            ),
+        )
     return position
 
 

@@ -44,6 +44,7 @@ from base_station.storage.projection import ProjectedTables
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import Snapshot
 from shared.clock import Clock
+from shared.coded_text import coded, map_texts
 from shared.errors import StoreError, UserError
 from shared.messages.station import Action
 
@@ -119,7 +120,7 @@ class Services(LoginServices):
         if not is_same_request(action_id, done.action_id):
             raise idempotency_key_reused()
         if done.refused is not None:
-            raise UserError(self.roster.shown(done.refused.reason))
+            raise UserError(map_texts(done.refused.reason, self.roster.shown))
         self.projection.hasten()
         return done
 
@@ -128,7 +129,9 @@ class Services(LoginServices):
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            raise StoreError("the station is too busy to say this now; try again") from None
+            raise StoreError(
+                coded("station-too-busy", "the station is too busy to say this now; try again")
+            ) from None
 
     def picture_with_trails(self) -> tuple[Snapshot, Trails]:
         """Gives the same with the trails of all units."""

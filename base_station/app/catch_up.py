@@ -87,8 +87,8 @@ class CatchUp:
             match wire.read_catch_up(encoded):
                 case wire.CaughtUp():
                     return
-                case wire.Failure(reason):
-                    raise StoreError(reason)
+                case wire.Failure() as failure:
+                    raise failure.error()
                 case wire.Damage():
                     pass  # the integrity check finds it, too
         raise StoreError("the process that projects the log has ended")

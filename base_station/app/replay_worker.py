@@ -159,7 +159,7 @@ def _catch_up(job: CatchUpJob, archive: Archive, line: FrameChannel) -> None:
             project_since(store, archive, job.since_ns)
         line.send(CaughtUp())
     except MusterError as error:
-        line.send(Failure(str(error), is_memory=False))
+        line.send(Failure.of(error))
 
 
 def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
@@ -180,7 +180,7 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
             page = html_document(gather(sources, records.require_incident(job.incident_id)))
         line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
     except MusterError as error:
-        line.send(Failure(str(error), is_memory=False))
+        line.send(Failure.of(error))
 
 
 def _copy_incidents(job: ArchiveJob, log: FolderFeed, line: FrameChannel) -> None:
@@ -196,7 +196,7 @@ def _copy_incidents(job: ArchiveJob, log: FolderFeed, line: FrameChannel) -> Non
                 line.send(CopyFrame(done.incident_id, done.damage))
         line.send(CopiesDone())
     except MusterError as error:
-        line.send(Failure(str(error), is_memory=False))
+        line.send(Failure.of(error))
 
 
 def _timeline(job: TimelineJob, own: FolderFeed, flaws: LogDefects, line: FrameChannel) -> None:
@@ -208,4 +208,4 @@ def _timeline(job: TimelineJob, own: FolderFeed, flaws: LogDefects, line: FrameC
             timeline = read_timeline(Records(store, SystemClock()), log, request)
         line.send(TimelineFrame(msgspec.structs.replace(timeline, defects=tuple(flaws()))))
     except MusterError as error:
-        line.send(Failure(str(error), is_memory=False))
+        line.send(Failure.of(error))

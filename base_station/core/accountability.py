@@ -17,6 +17,7 @@ from base_station.core.state.command import SentCommand
 from base_station.core.state.duty import Duty, ParConfirmation, Source
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages import CommandKind
 from shared.messages.station import (
@@ -79,9 +80,20 @@ def continue_duty(state: StationState, unit: UnitState, duty: Duty, before: Duty
 def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
     """PARs confirmed by radio.  UserError where nobody is on duty."""
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew or floor that has members, everyone")
+        raise UserError(
+            coded(
+                "check-in-addressee",
+                "say one of: a unit, a crew or floor that has members, everyone",
+            )
+        )
     if action.check_in_id and _is_taken(state, action.check_in_id):
-        raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
+        raise UserError(
+            coded(
+                "check-in-id-taken",
+                "a check-in needs an id of its own, not {check_in!r}",
+                check_in=action.check_in_id,
+            )
+        )
     incident_id = action.incident_id
     if action.everyone and state.open_incidents:
         incident_id = state.named_incident(incident_id).incident_id
@@ -94,7 +106,13 @@ def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
         recipients = (
             action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         )
-        raise UserError(f"nobody of {recipients} is on duty in an open incident")
+        raise UserError(
+            coded(
+                "check-in-nobody",
+                "nobody of {recipients} is on duty in an open incident",
+                recipients=recipients,
+            )
+        )
     for unit in found:
         _confirm(state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id))
     return found
@@ -141,7 +159,9 @@ def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
     """Send the wearer to rest, or back to work.  UserError where that is so already."""
     duty = unit.duty
     if duty is None:
-        raise UserError(f"{unit.name} is not on duty in an open incident")
+        raise UserError(
+            coded("not-on-duty", "{name} is not on duty in an open incident", name=unit.name)
+        )
     if resting == (duty.rest_since_ns is not None):
         raise UserError(f"{unit.name} is {'resting' if resting else 'at work'} already")
     duty.rest_since_ns = state.t_ns if resting else None

@@ -9,6 +9,7 @@ from __future__ import annotations
 import msgspec
 
 from base_station.core.state import Dispatch, Incident, StationState
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import NoteDispatch
 
@@ -44,7 +45,14 @@ def take(state: StationState, number: str) -> NoteDispatch:
     """
     opened = incident_of(state, number)
     if opened is not None:
-        raise UserError(f"the dispatch {number} has opened the incident {opened.name!r} already")
+        raise UserError(
+            coded(
+                "dispatch-opened",
+                "the dispatch {number} has opened the incident {incident!r} already",
+                number=number,
+                incident=opened.name,
+            )
+        )
     report = _required(state, number).report
     state.dispatches = _without(state, number)
     return report
@@ -78,5 +86,11 @@ def _without(state: StationState, number: str) -> tuple[Dispatch, ...]:
 def _required(state: StationState, number: str) -> Dispatch:
     known = find(state, number)
     if known is None:
-        raise UserError(f"there is no dispatch {number} from which no incident was opened")
+        raise UserError(
+            coded(
+                "dispatch-unknown",
+                "there is no dispatch {number} from which no incident was opened",
+                number=number,
+            )
+        )
     return known

@@ -13,6 +13,7 @@ from hashlib import sha256
 import msgspec
 
 from base_station.core.state import ERASED_TEXT, IdempotencyRecord, StationState
+from shared.coded_text import NO_CODE, code_of_text
 from shared.messages import OperatorAction
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import Action, OpenIncident, SendCommand
@@ -61,7 +62,7 @@ def record_result(state: StationState, done: OperatorAction, refused: str) -> No
         del state.idempotency_records[next(iter(state.idempotency_records))]
     created_id = created_id_of(done.action)
     state.idempotency_records[key] = IdempotencyRecord(
-        done.action_id, state.t_ns, created_id, refused
+        done.action_id, state.t_ns, created_id, str(refused), code_of_text(refused)
     )
 
 
@@ -69,7 +70,9 @@ def erase_reasons(state: StationState) -> None:
     """Erase the reasons of refusals, which may contain names."""
     for key, done in state.idempotency_records.items():
         if done.refused:
-            state.idempotency_records[key] = msgspec.structs.replace(done, refused=ERASED_TEXT)
+            state.idempotency_records[key] = msgspec.structs.replace(
+                done, refused=ERASED_TEXT, refused_code=NO_CODE
+            )
 
 
 def created_id_of(action: Action) -> str:

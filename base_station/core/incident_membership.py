@@ -9,6 +9,7 @@ from base_station.core.state import Incident, StationState, UnitState
 from base_station.core.state.duty import Duty
 from base_station.core.state.trust_tally import TrustTally
 from base_station.core.units import thermal_dose
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import AssignIncident
 
@@ -28,7 +29,7 @@ def assign(state: StationState, action: AssignIncident) -> Iterator[UnitState]:
     where a unit or the incident is unknown, before anything is changed.
     """
     if not action.unit_ids:
-        raise UserError("no unit to assign: name at least one unit")
+        raise UserError(coded("members-none-named", "no unit to assign: name at least one unit"))
     units = [state.registered_unit(one) for one in dict.fromkeys(action.unit_ids)]
     incident = state.named_incident(action.incident_id) if action.incident_id else None
     for unit in units:

@@ -37,6 +37,7 @@ from base_station.core.state.resolve_queue import request_resolve
 from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.interface import Start
 from base_station.site.plan_reader import PlanReader
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages import CommandKind
@@ -233,7 +234,9 @@ class ActionHandler:
         command = command_tracker.undo(state, action)
         units = accountability.undo(state, action)
         if command is None and not units:
-            raise UserError("there is no confirmation by radio under this id to undo")
+            raise UserError(
+                coded("nothing-to-undo", "there is no confirmation by radio under this id to undo")
+            )
         if command is not None:
             yield command
         yield from self._with_alarms(state, units)
@@ -267,7 +270,7 @@ class ActionHandler:
     def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
         unit = state.registered_unit(action.unit_id)
         if state.open_incidents:
-            raise UserError("an incident is open; close it first")
+            raise UserError(coded("incident-open-meanwhile", "an incident is open; close it first"))
         self._positioning.forget(state, unit)
         pinned = pin_registry.forget(state, unit.unit_id)
         self._alarms.erase_names(state, unit)
@@ -287,7 +290,12 @@ class ActionHandler:
         _require_finite(action.north_m, action.east_m, action.down_m, action.heading_rad)
         _require_finite(action.std_m, action.heading_std_rad)
         if action.std_m < 0.0 or action.heading_std_rad < 0.0:
-            raise UserError("a start needs uncertainties that are not negative")
+            raise UserError(
+                coded(
+                    "start-uncertainty-negative",
+                    "a start needs uncertainties that are not negative",
+                )
+            )
         start = Start(
             action.north_m,
             action.east_m,
@@ -314,7 +322,7 @@ def _earlier_order(state: StationState, by: str, action: SendCommand) -> Iterato
     elif action.kind is CommandKind.END_ORDER:
         yield order_ends.stop(state, action)
     else:
-        raise UserError("an order ends by ALL_CLEAR or END_ORDER")
+        raise UserError(coded("order-end-unknown", "an order ends by ALL_CLEAR or END_ORDER"))
 
 
 def _site_of_place(state: StationState, action: PinAction) -> str | None:
@@ -343,7 +351,14 @@ def _is_first_known_place(site: SiteState) -> bool:
 def _anchor(action: SetAnchor) -> Anchor:
     _require_finite(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
     if abs(action.lat_deg) > 90.0 or abs(action.lon_deg) > 180.0:
-        raise UserError(f"{action.lat_deg}, {action.lon_deg} is no latitude and longitude")
+        raise UserError(
+            coded(
+                "anchor-no-place",
+                "{lat_deg}, {lon_deg} is no latitude and longitude",
+                lat_deg=action.lat_deg,
+                lon_deg=action.lon_deg,
+            )
+        )
     return Anchor(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
 
 
@@ -359,4 +374,4 @@ def _or_raise(outcome: Alarm | str) -> Alarm:
 
 def _require_finite(*values: float) -> None:
     if not all(math.isfinite(value) for value in values):
-        raise UserError("a coordinate or angle is no finite number")
+        raise UserError(coded("number-not-finite", "a coordinate or angle is no finite number"))

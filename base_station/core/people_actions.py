@@ -10,6 +10,7 @@ import msgspec
 from base_station.core import accountability, dispatches, incident_membership
 from base_station.core.closed_incidents import add_closed_incident
 from base_station.core.state import OWN_SITE_ID, Person, SiteState, StationState, UnitState
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import (
     Assign,
@@ -75,9 +76,21 @@ def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
     """Open an incident: all units are in it, unless others are open."""
     opened = state.open_incidents
     if opened and not action.beside_others:
-        raise UserError(f"the incident {opened[-1].name!r} is open; close it first")
+        raise UserError(
+            coded(
+                "incident-still-open",
+                "the incident {incident!r} is open; close it first",
+                incident=opened[-1].name,
+            )
+        )
     if action.incident_id in state.incidents:
-        raise UserError(f"an incident needs an id of its own, not {action.incident_id!r}")
+        raise UserError(
+            coded(
+                "incident-id-taken",
+                "an incident needs an id of its own, not {incident!r}",
+                incident=action.incident_id,
+            )
+        )
     is_used = any(one.site_id == OWN_SITE_ID for one in opened)
     site_id = action.incident_id if is_used else OWN_SITE_ID
     number = action.dispatch_number
@@ -108,7 +121,7 @@ def _end_before(state: StationState, site_id: str, *, is_only: bool) -> list[Uni
 
 def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
     if not action.incident_id:
-        raise UserError("no open incident without an id")
+        raise UserError(coded("incident-without-id", "no open incident without an id"))
     running = state.named_incident(action.incident_id)
     closed = msgspec.structs.replace(running, closed_ns=state.t_ns)
     state.incidents[closed.incident_id] = closed

@@ -53,6 +53,7 @@ from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.interface import Smoother
 from base_station.site.plan_reader import PlanReader
 from shared.channels import UP, channel_of
+from shared.coded_text import text_of_error
 from shared.errors import UserError
 from shared.messages import (
     Command,
@@ -183,8 +184,8 @@ class StationPipeline:
         try:
             effects = self._actions.apply(self.state, message.by, message.action)
         except UserError as error:
-            idempotency.record_result(self.state, message, str(error))
-            return [Refused(message.action_id, str(error))]
+            idempotency.record_result(self.state, message, text_of_error(error))
+            return [Refused(message.action_id, text_of_error(error))]
         idempotency.record_result(self.state, message, refused="")
         outputs: list[Output] = [*self._incidents_changed(before, message.action)]
         for effect in effects:

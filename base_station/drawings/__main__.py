@@ -11,6 +11,7 @@ import msgspec
 
 from base_station.drawings.draft import Draft, DrawingRefusal, Options
 from base_station.drawings.reader import read_drawing
+from shared.coded_text import text_of_error
 from shared.errors import UserError
 
 MOST_MEMORY_BYTES = 2_000_000_000
@@ -27,9 +28,9 @@ def main() -> None:
     try:
         answer = read_drawing(sys.stdin.buffer.read(), options)
     except UserError as error:
-        answer = DrawingRefusal(str(error))
+        answer = DrawingRefusal.of(text_of_error(error))
     except (MemoryError, RecursionError):
-        answer = DrawingRefusal("the drawing is too large to be read; send a part of it")
+        answer = DrawingRefusal.of("the drawing is too large to be read; send a part of it")
     sys.stdout.buffer.write(msgspec.json.encode(answer))
 
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from shared.coded_text import TextCode, code_of_text
+from shared.coded_text import NO_CODE, TextCode, code_of_text
 
 
 class DrawnPicture(msgspec.Struct, frozen=True):
@@ -41,9 +41,14 @@ def noted(draft: Draft, notes: Iterable[str]) -> Draft:
 
 
 class DrawingRefusal(msgspec.Struct, frozen=True, tag="refused"):
-    """Reason for a person."""
+    """Reason for a person, and its code."""
 
     reason: str
+    code: TextCode = NO_CODE
+
+    @staticmethod
+    def of(text: str) -> DrawingRefusal:
+        return DrawingRefusal(str(text), code_of_text(text))
 
 
 LengthUnit = Literal["mm", "cm", "m", "in", "ft"]

@@ -10,6 +10,7 @@ import sys
 import msgspec
 
 from base_station.drawings.draft import Draft, DrawingRefusal, Options
+from shared.coded_text import text_with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 60.0
@@ -36,5 +37,5 @@ def draft_of(content: bytes, options: Options) -> Draft:
         raise UserError("the drawing cannot be read; save it anew, or as a PNG, and send that")
     answer = msgspec.json.decode(done.stdout, type=Draft | DrawingRefusal)
     if isinstance(answer, DrawingRefusal):
-        raise UserError(answer.reason)
+        raise UserError(text_with_code(answer.reason, answer.code))
     return answer

@@ -14,6 +14,7 @@ from base_station.engine.ports import ActionResult
 from base_station.engine.write_ahead import WriteAhead
 from shared.channels import OPERATOR
 from shared.codec import encode
+from shared.coded_text import coded
 from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.messages import STATION_ID, OperatorAction
@@ -95,4 +96,8 @@ class ActionQueue:
         """Refuse what waits still, as the engine has ended."""
         while self._waiting:
             future = self._waiting.popleft()[-1]
-            future.set_exception(StoreError("the station is stopping; do it again when it runs"))
+            future.set_exception(
+                StoreError(
+                    coded("station-stopping", "the station is stopping; do it again when it runs")
+                )
+            )

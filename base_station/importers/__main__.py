@@ -15,6 +15,7 @@ from base_station.importers.interface import ImportOptions
 from base_station.importers.process import ImportRefusal
 from base_station.importers.reading import read_import
 from base_station.storage.imports import ImportedContent
+from shared.coded_text import text_of_error
 from shared.errors import MusterError
 
 MOST_MEMORY_BYTES = 3_000_000_000
@@ -31,11 +32,11 @@ def main() -> None:
     try:
         answer = read_import(Path(sys.argv[1]), options)
     except MusterError as error:
-        answer = ImportRefusal(str(error))
+        answer = ImportRefusal.of(text_of_error(error))
     except OSError as error:
-        answer = ImportRefusal(f"it cannot be read: {error.strerror or error}")
+        answer = ImportRefusal.of(f"it cannot be read: {error.strerror or error}")
     except (MemoryError, RecursionError):
-        answer = ImportRefusal("it is too large to be read: take a part of it")
+        answer = ImportRefusal.of("it is too large to be read: take a part of it")
     is_read = isinstance(answer, ImportedContent)
     sys.stdout.buffer.write(bytes([is_read]) + msgspec.msgpack.encode(answer))
 

@@ -12,13 +12,21 @@ import msgspec
 
 from base_station.importers.interface import ImportOptions
 from base_station.storage.imports import ImportedContent
+from shared.coded_text import NO_CODE, TextCode, code_of_text, text_with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 1200.0
 
 
 class ImportRefusal(msgspec.Struct, frozen=True):
+    """Reason for a person, and its code."""
+
     reason: str
+    code: TextCode = NO_CODE
+
+    @staticmethod
+    def of(text: str) -> ImportRefusal:
+        return ImportRefusal(str(text), code_of_text(text))
 
 
 def content_of(path: Path, options: ImportOptions) -> ImportedContent:
@@ -41,5 +49,6 @@ def content_of(path: Path, options: ImportOptions) -> ImportedContent:
         raise UserError("it cannot be read: it may be damaged; save it again, and bring that in")
     is_read, encoded = done.stdout[0], done.stdout[1:]
     if not is_read:
-        raise UserError(msgspec.msgpack.decode(encoded, type=ImportRefusal).reason)
+        refusal = msgspec.msgpack.decode(encoded, type=ImportRefusal)
+        raise UserError(text_with_code(refusal.reason, refusal.code))
     return msgspec.msgpack.decode(encoded, type=ImportedContent)

@@ -16,7 +16,13 @@ import pytest
 from tests.conftest import PROJECT_ROOT
 
 LANGUAGES = ("en", "de", "fr")
-PARTS = ("problems", "unit_faults", "coded_reasons", "drawing_notes")
+PARTS = (
+    "problems",
+    "unit_faults",
+    "coded_reasons",
+    "drawing_notes",
+    *(f"refusals_{area}" for area in ("access", "people", "incident", "plan", "past", "station")),
+)
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
 _MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 _BRACE = re.compile(r"\{(\w*)|\}")

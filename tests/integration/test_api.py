@@ -106,7 +106,10 @@ async def test_an_incident_is_opened_once_and_closed(
     assert incident["opened_by"] == "commander"
     again = await commander.post("/incidents", json={"name": "Cellar"})
     assert again.status_code == 409
-    assert "close it first" in again.json()["detail"]
+    problem = again.json()
+    assert problem["detail"] == "the incident 'Kitchen' is open; close it first"
+    assert problem["code"] == "incident-still-open"
+    assert problem["parameters"] == {"incident": "Kitchen"}
     clock.advance(60.0)
     path = f"/incidents/{incident['incident_id']}"
     assert (await commander.post(f"{path}/close")).status_code == 204

@@ -65,6 +65,8 @@ async def test_refused_request_is_refused_again_with_the_same_answer(
     again = await commander.put("/units/FF-01/rest", json=rest, headers=KEY)
     assert (first.status_code, again.status_code) == (409, 409)
     assert again.json() == first.json()
+    assert first.json()["code"] == "not-on-duty"
+    assert first.json()["parameters"] == {"name": "Ada"}
     other = await commander.put("/units/FF-01/rest", json={"resting": False}, headers=KEY)
     assert other.status_code == 422, "it is told of itself, not of what was refused"
     anew = await commander.put("/units/FF-01/rest", json=rest, headers={"Idempotency-Key": "b"})

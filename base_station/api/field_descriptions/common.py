@@ -25,4 +25,8 @@ FIELDS: Mapping[str, str] = {
     "ProblemDocument.title": "The status in words.",
     "ProblemDocument.status": "The HTTP status.",
     "ProblemDocument.detail": "What is wrong and what to do, a sentence for a person.",
+    "ProblemDocument.code": "Stable code of that sentence; empty: it has none.",
+    "ProblemDocument.parameters": "What the sentence is made of, by name: texts, and numbers whose "
+    "unit is the end of their name (away_s). Where one is itself made from a code, that is "
+    "reason:, and its own parameters are reason:NAME.",
 }

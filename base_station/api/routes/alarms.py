@@ -21,12 +21,13 @@ from base_station.report.alarm_explanation import Crossing
 from base_station.report.contents import Series
 from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 router = APIRouter(tags=["alarms"])
 
-_NO_ALARM = "There is no such alarm."
+_NO_ALARM = coded("alarm-unknown", "There is no such alarm.")
 _SERIES = {"battery": "battery_level"}  # under another name in the answer
 
 
@@ -100,7 +101,13 @@ def explain_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> Alar
     if alarm is None:
         raise Problem(404, _NO_ALARM)
     if not alarm.unit_id:
-        raise Problem(404, "This alarm is about the station itself; it has no values of a unit.")
+        raise Problem(
+            404,
+            coded(
+                "alarm-of-station",
+                "This alarm is about the station itself; it has no values of a unit.",
+            ),
+        )
     if station.alarm_explainer is None:
         raise Problem(503, "This station has no log to read.")
     try:

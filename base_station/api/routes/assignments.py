@@ -12,6 +12,7 @@ from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
+from base_station.api.refusals import NO_PERSON
 from base_station.api.services import Station
 from base_station.storage.db.window import Window
 from base_station.views.answer import to_ms, to_ms_or_none
@@ -60,7 +61,7 @@ def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
     """From now on this person wears this unit, and no other."""
     person = station.roster.person(new.person_id)
     if person is None:
-        raise Problem(404, "There is no such person.")
+        raise Problem(404, NO_PERSON)
     perform(Assign(new.unit_id, person.person_id))
 
 

@@ -16,6 +16,7 @@ from base_station.api.named_incident import open_or_404
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.views.wire import CommandView
+from shared.coded_text import coded
 from shared.messages import CommandKind
 from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
@@ -211,4 +212,4 @@ def _command_or_404(station: Services, command_id: str) -> CommandView:
     for view in station.picture().commands:
         if view.command_id == command_id:
             return view
-    raise Problem(404, "There is no such command.")
+    raise Problem(404, coded("command-unknown", "There is no such command."))

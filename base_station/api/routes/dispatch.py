@@ -24,6 +24,7 @@ from base_station.dispatch.cap import read_alert
 from base_station.dispatch.reading import read_report
 from base_station.views.answer import Answer
 from base_station.views.wire import DispatchView, Snapshot
+from shared.coded_text import coded
 from shared.errors import WireError
 from shared.messages.station import DismissDispatch
 
@@ -125,7 +126,9 @@ def list_dispatches(station: Station, _: Viewer) -> list[OfferedDispatch]:
 def dismiss_dispatch(form: Dismissal, station: Station, perform: Perform) -> None:
     """Offer a dispatch no longer; an incident can still be opened from it."""
     if known_dispatch(station.picture(), form.number) is None:
-        raise Problem(404, f"There is no dispatch {form.number}.")
+        raise Problem(
+            404, coded("dispatch-not-listed", "There is no dispatch {number}.", number=form.number)
+        )
     perform(DismissDispatch(form.number))
 
 

@@ -19,6 +19,7 @@ from base_station.security.pki.qr import qr_code, rows_of
 from base_station.views.answer import to_ms
 from shared.channels import validate_unit_id
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.enrolment import Holder
 from shared.errors import ConfigError, UserError
 from shared.host_names import is_loopback
@@ -26,14 +27,19 @@ from shared.tls import parse_certificate
 
 router = APIRouter(tags=["enrolments"])
 
-_NO_ENROLMENTS = "This station enrols no units now: it only replays, or is still starting."
-_NO_AUTHORITY = (
-    "This station has no certificate authority, so no unit can be enrolled: make one with "
-    "`muster pki init`, and let the bus listen on tls/."
+_NO_ENROLMENTS = coded(
+    "enrols-none", "This station enrols no units now: it only replays, or is still starting."
 )
-_NOT_PRIVATE = (
-    "An enrolment holds a private key, which others on the network could read on its way to you: "
-    "serve the console over TLS, or enrol on the station's own machine."
+_NO_AUTHORITY = coded(
+    "no-authority",
+    "This station has no certificate authority, so no unit can be enrolled: "
+    "make one with `muster pki init`, and let the bus listen on tls/.",
+)
+_NOT_PRIVATE = coded(
+    "enrolment-not-private",
+    "An enrolment holds a private key, which others on the network could read "
+    "on its way to you: serve the console over TLS, or enrol on the station's "
+    "own machine.",
 )
 
 

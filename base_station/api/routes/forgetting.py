@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from base_station.api.authentication import Administrator
 from base_station.api.forms import Form, Id, Name
 from base_station.api.problems import Problem
+from base_station.api.refusals import NO_PERSON, ONLY_REPLAYS
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services, Station
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
@@ -57,7 +58,7 @@ def forget_person(
     person = station.roster.person(person_id)
     names = station.roster.names_of(person_id) if person is None else {person.name}
     if not names:
-        raise Problem(404, "There is no such person.")
+        raise Problem(404, NO_PERSON)
     _require_name(confirmation, names)
     worn = station.worn_by(person_id)
     if worn and not confirmation.unassign:
@@ -109,7 +110,7 @@ def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJo
 
 def _desk(station: Services) -> ErasureQueue:
     if station.forgettings is None:
-        raise Problem(409, "This station only replays; nothing can be changed here.")
+        raise Problem(409, ONLY_REPLAYS)
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")

@@ -10,6 +10,7 @@ from base_station.api.problems import Problem
 from base_station.api.services import Station
 from base_station.views.answer import Answer, to_ms
 from base_station.views.wire import HealthView
+from shared.coded_text import coded
 
 router = APIRouter(tags=["health"])
 
@@ -36,7 +37,10 @@ class Health(HealthView, frozen=True, kw_only=True):
 def get_health(station: Station, _: Viewer) -> Health:
     view = station.hub.health
     if view is None:
-        raise Problem(503, "The station has just started; ask again in a second.")
+        raise Problem(
+            503,
+            coded("station-just-started", "The station has just started; ask again in a second."),
+        )
     return Health(
         **msgspec.structs.asdict(view),
         consoles=station.hub.watchers,

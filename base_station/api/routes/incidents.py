@@ -43,6 +43,7 @@ from base_station.views.answer import Answer, to_ms, to_ms_or_none
 from base_station.views.station import dispatch_view
 from base_station.views.wire import AlarmParametersView, DispatchView
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.messages.station import CloseIncident, OpenIncident
 
 router = APIRouter(tags=["incidents"])
@@ -225,7 +226,13 @@ def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
     station.projection.flush()
     incident = station.records.incident(incident_id)
     if incident is None:
-        raise Problem(503, "The incident was opened, but the database has not taken it yet.")
+        raise Problem(
+            503,
+            coded(
+                "incident-not-stored-yet",
+                "The incident was opened, but the database has not taken it yet.",
+            ),
+        )
     return _incident(incident, station, None)
 
 

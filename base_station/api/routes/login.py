@@ -16,6 +16,7 @@ from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
 from base_station.api.services import Logins, LoginServices
 from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S
+from shared.coded_text import coded
 
 router = APIRouter(tags=["login"])
 
@@ -79,7 +80,7 @@ def _log_in(
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
         station.records.audit(credentials.username, "LoginRefused", address)
-        raise Problem(401, "Name or password is wrong.")
+        raise Problem(401, coded("login-wrong", "Name or password is wrong."))
     station.records.audit(principal.username, "LoggedIn", address)
     give_cookie(request, response, station, secret)
     return _me(principal, station)
@@ -96,7 +97,7 @@ def go_on(
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
         throttle.record_refusal(address)
-        raise Problem(401, "This ticket is of no use (any more); log in.")
+        raise Problem(401, coded("ticket-void", "This ticket is of no use (any more); log in."))
     station.records.audit(principal.username, "WentOn", address)
     give_cookie(request, response, station, secret)
     return _me(principal, station)
@@ -127,7 +128,13 @@ def hand_over(request: Request, station: Logins, _: Viewer) -> Ticket:
     """Consoles ask now and then, so that users need not log in again when this station dies."""
     ticket = station.accounts.hand_over(request.cookies.get(COOKIE, ""))
     if ticket is None:
-        raise Problem(403, "A ticket is for who has logged in with a browser; a token holds there.")
+        raise Problem(
+            403,
+            coded(
+                "ticket-for-browsers",
+                "A ticket is for who has logged in with a browser; a token holds there.",
+            ),
+        )
     return Ticket(ticket=ticket, lasts_s=HAND_OVER_S)
 
 

@@ -13,6 +13,7 @@ from base_station.api.routes.commands import EveryoneTarget, Target, UnitTarget,
 from base_station.api.services import Services, Station
 from base_station.views.answer import Answer
 from base_station.views.wire import UnitView
+from shared.coded_text import coded
 from shared.messages.station import AssignIncident
 
 router = APIRouter(tags=["incidents"])
@@ -60,7 +61,15 @@ def assign_members(
 def release_member(incident_id: Id, unit_id: UnitId, station: Station, perform: Perform) -> None:
     """The unit and its wearer are in no incident from now on."""
     if not any(one.unit_id == unit_id for one in _members(station, incident_id)):
-        raise Problem(404, f"{unit_id} is not in the incident {incident_id}.")
+        raise Problem(
+            404,
+            coded(
+                "not-a-member",
+                "{unit} is not in the incident {incident}.",
+                unit=unit_id,
+                incident=incident_id,
+            ),
+        )
     perform(AssignIncident("", (unit_id,)))
 
 
@@ -75,7 +84,13 @@ def _units_of(target: object, station: Services) -> tuple[str, ...]:
         one.unit_id for one in worn if everyone or (one.person and one.person.person_id in people)
     )
     if not units:
-        raise Problem(409, "None of them wears a registered unit: assign a unit first.")
+        raise Problem(
+            409,
+            coded(
+                "members-without-units",
+                "None of them wears a registered unit: assign a unit first.",
+            ),
+        )
     return units
 
 

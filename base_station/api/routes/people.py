@@ -16,17 +16,17 @@ from base_station.api.idempotent_request import Perform
 from base_station.api.images import normalize_photo
 from base_station.api.people_csv import MOST_CSV_BYTES, CsvFault, CsvPerson, read_people
 from base_station.api.problems import Problem
+from base_station.api.refusals import NO_PERSON
 from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.storage.db import models
 from base_station.storage.db.people_import import ImportStep, ListedPerson
 from base_station.views.wire import PersonView
+from shared.coded_text import Measure, coded, text_of_error
 from shared.errors import UserError
 from shared.messages.station import Assign
 
 router = APIRouter(tags=["people"], route_class=UploadRoute)
-
-_NO_PERSON = "There is no such person."
 
 
 class PersonForm(Form):
@@ -90,7 +90,7 @@ def import_people(
     try:
         listed, faults = read_people(csv)
     except UserError as error:
-        raise Problem(422, str(error)) from error
+        raise Problem(422, text_of_error(error)) from error
     wanted = [ListedPerson(one.name, one.crew, one.role) for one in listed]
     steps = station.roster.preview_import(wanted)
     faults = sorted(faults + _ambiguous(listed, steps))
@@ -120,8 +120,15 @@ def _ambiguous(listed: list[CsvPerson], steps: list[ImportStep]) -> list[CsvFaul
 
 
 def _refusal(faults: list[CsvFault]) -> str:
-    more = f" (the first of {len(faults)} faults)" if len(faults) > 1 else ""
-    return f"no person was added: line {faults[0].line}: {faults[0].text}{more}"
+    return coded(
+        "people-faulty",
+        "no person was added: line {line}: {fault}{more}",
+        line=faults[0].line,
+        fault=faults[0].text,
+        more=Measure(
+            len(faults), f" (the first of {len(faults)} faults)" if len(faults) > 1 else ""
+        ),
+    )
 
 
 def _announce(steps: list[ImportStep], station: Services, by: str) -> None:
@@ -146,7 +153,7 @@ def _announce(steps: list[ImportStep], station: Services, by: str) -> None:
 def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
     person = station.roster.person(person_id)
     if person is None:
-        raise Problem(404, _NO_PERSON)
+        raise Problem(404, NO_PERSON)
     return _person(person, station)
 
 
@@ -155,7 +162,7 @@ def change_person(person_id: Id, form: PersonForm, station: Station, who: Comman
     """Change a person; a wearer is shown with the new name at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
-        raise Problem(404, _NO_PERSON)
+        raise Problem(404, NO_PERSON)
     for unit_id in station.worn_by(person_id):
         station.perform(who.username, Assign(unit_id, person_id))  # shows it anew
     station.records.audit(who.username, "ChangedPerson", person_id)
@@ -165,7 +172,7 @@ def change_person(person_id: Id, form: PersonForm, station: Station, who: Comman
 @router.delete("/people/{person_id}", status_code=204)
 def remove_person(person_id: Id, station: CurrentStation, who: Commander) -> None:
     if not station.roster.remove_person(person_id):
-        raise Problem(404, _NO_PERSON)
+        raise Problem(404, NO_PERSON)
     station.records.audit(who.username, "RemovedPerson", person_id)
 
 
@@ -178,12 +185,12 @@ def set_photo(
 ) -> None:
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
     if station.roster.person(person_id) is None:
-        raise Problem(404, _NO_PERSON)
+        raise Problem(404, NO_PERSON)
     with station.image_lock:
         jpeg, photo_hash = normalize_photo(photo)
     person = station.roster.set_photo(person_id, jpeg, photo_hash)
     if person is None:
-        raise Problem(404, _NO_PERSON)
+        raise Problem(404, NO_PERSON)
     for unit_id in station.worn_by(person_id):
         station.perform(who.username, Assign(unit_id, person_id))  # shows it anew
     station.records.audit(who.username, "SetPhoto", person_id)
@@ -197,7 +204,7 @@ def get_photo(
 ) -> Response:
     found = station.roster.photo(person_id)
     if found is None:
-        raise Problem(404, "There is no photo of this person.")
+        raise Problem(404, coded("photo-missing", "There is no photo of this person."))
     jpeg, photo_hash = found
     # The address changes with the photo; only this browser may keep it.
     headers = {"Cache-Control": "private, max-age=86400", "ETag": f'"{photo_hash}"'}

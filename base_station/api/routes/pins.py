@@ -26,6 +26,7 @@ from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.views.wire import BeaconView, PinView
 from shared.clock import NS_PER_MS
+from shared.coded_text import coded
 from shared.messages.pins import (
     PlaceBeacon,
     RemoveBeacon,
@@ -37,8 +38,8 @@ from shared.messages.pins import (
 
 router = APIRouter(tags=["pins"])
 
-_NO_PIN = "There is no such pin."
-_NO_BEACON = "There is no such beacon."
+_NO_PIN = coded("pin-unknown", "There is no such pin.")
+_NO_BEACON = coded("beacon-unknown", "There is no such beacon.")
 
 Milliseconds = Annotated[int, Field(ge=0, le=MAX_TIME_MS)]
 Std = Annotated[float, Field(gt=0.0, le=1000.0)]
@@ -127,7 +128,14 @@ def move_pin(pin_id: Id, form: PinForm, station: Station, perform: Perform) -> P
     """Remove the pin and set it anew; fields that are left out stay as they were, the time too."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
-        raise Problem(409, f"This pin is a {before.kind}; remove it, and set another.")
+        raise Problem(
+            409,
+            coded(
+                "pin-of-another-kind",
+                "This pin is a {kind}; remove it, and set another.",
+                kind=before.kind,
+            ),
+        )
     left_out = _PIN_MAY_KEEP - form.model_fields_set
     form = form.model_copy(update={name: getattr(before, name) for name in left_out})
     perform(_place_pin(station, pin_id, form))

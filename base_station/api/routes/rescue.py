@@ -14,6 +14,7 @@ from base_station.api.problems import Problem
 from base_station.api.route_answers import RouteAnswer, find_routes
 from base_station.api.services import Station
 from base_station.views.answer import Answer, to_ms
+from shared.coded_text import coded
 
 router = APIRouter(tags=["commands"])
 
@@ -67,7 +68,7 @@ def begin_guide(
 def end_guide(rescuer_id: UnitId, station: Station, guidance: Guiding, perform: Perform) -> None:
     """End the guidance; the rescuer's unit receives its end."""
     if not guidance.end(station, rescuer_id, perform):
-        raise Problem(404, "This rescuer is not guided.")
+        raise Problem(404, coded("rescuer-not-guided", "This rescuer is not guided."))
 
 
 def _answer(guide: Guide) -> GuideAnswer:

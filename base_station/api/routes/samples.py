@@ -24,6 +24,7 @@ from base_station.api.uploads import UploadRoute
 from base_station.engine.sample_intake import SampleIntake
 from base_station.views.answer import to_ms, to_ms_or_none
 from shared.clock import NS_PER_DAY
+from shared.coded_text import coded
 
 router = APIRouter(tags=["samples"], route_class=UploadRoute)
 
@@ -123,23 +124,35 @@ def add_unit_token(
 @router.delete("/units/{unit_id}/sample-tokens/{token_id}", status_code=204)
 def remove_unit_token(unit_id: UnitId, token_id: Id, station: Station, who: Administrator) -> None:
     if not station.accounts.unit_tokens.remove(unit_id, token_id):
-        raise Problem(404, f"{unit_id} has no such token.")
+        raise Problem(404, coded("unit-token-unknown", "{unit} has no such token.", unit=unit_id))
     station.records.audit(who.username, "RemovedUnitToken", f"{token_id} of unit {unit_id}")
 
 
 def _intake_for(unit_id: str, station: Services, who: Viewer) -> SampleIntake:
     """Intake for those who may post samples of this unit: the unit itself, or an administrator."""
     if who.unit_id and who.unit_id != unit_id:
-        raise Problem(403, f"This token is for samples of {who.unit_id}, not of {unit_id}.")
+        raise Problem(
+            403,
+            coded(
+                "unit-token-of-another",
+                "This token is for samples of {unit}, not of {wanted}.",
+                unit=who.unit_id,
+                wanted=unit_id,
+            ),
+        )
     if not who.unit_id:
         require_role(who, Role.ADMINISTRATOR)
         _require_registered(station, unit_id)
     if station.intake is None:
-        raise Problem(409, "This station takes no samples: it only replays.")
+        raise Problem(
+            409, coded("samples-not-taken", "This station takes no samples: it only replays.")
+        )
     return station.intake
 
 
 def _require_registered(station: Services, unit_id: str) -> None:
     unit = station.roster.unit(unit_id)
     if unit is None or unit.registered_ns is None:
-        raise Problem(404, f"There is no registered unit {unit_id}.")
+        raise Problem(
+            404, coded("sample-unit-unknown", "There is no registered unit {unit}.", unit=unit_id)
+        )

@@ -10,6 +10,7 @@ from base_station.api.ha_status import HaStatus
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.views.wire import StandbyView
+from shared.coded_text import coded
 
 router = APIRouter(tags=["standby"])
 
@@ -40,5 +41,7 @@ def take_over(station: Station, who: Commander) -> None:
 
 def _ha_status_or_404(station: Services) -> HaStatus:
     if station.ha_status is None:
-        raise Problem(404, "This is the only station: it has no [standby] settings.")
+        raise Problem(
+            404, coded("station-alone", "This is the only station: it has no [standby] settings.")
+        )
     return station.ha_status

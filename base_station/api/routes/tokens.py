@@ -15,6 +15,7 @@ from base_station.api.routes.users import RoleWord
 from base_station.api.services import Station
 from base_station.views.answer import to_ms, to_ms_or_none
 from shared.clock import NS_PER_DAY
+from shared.coded_text import coded
 
 router = APIRouter(tags=["tokens"])
 
@@ -60,13 +61,27 @@ def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
     expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * NS_PER_DAY
     role = Role.of(new.role)
     if role > who.role:  # a token makes no token that may do more than itself
-        raise Problem(403, f"You are {who.role.word}; a token of yours cannot be {new.role}.")
+        raise Problem(
+            403,
+            coded(
+                "token-above-own-role",
+                "You are {role}; a token of yours cannot be {wanted}.",
+                role=who.role.word,
+                wanted=new.role,
+            ),
+        )
     scopes = frozenset(new.scopes)
     if who.scopes and (not scopes or not scopes <= who.scopes):
-        raise Problem(403, "A token makes only tokens for what it is for itself.")
+        raise Problem(
+            403,
+            coded("token-beyond-own-scope", "A token makes only tokens for what it is for itself."),
+        )
     ends_ns = who.token_ends_ns
     if ends_ns is not None and (expires_ns is None or expires_ns > ends_ns):
-        raise Problem(403, "A token makes no token that outlasts it; give fewer days.")
+        raise Problem(
+            403,
+            coded("token-outlasts", "A token makes no token that outlasts it; give fewer days."),
+        )
     token_id, secret = station.accounts.add_token(who.username, new.name, role, expires_ns, scopes)
     what = ", ".join(sorted(scopes)) or "everything"
     station.records.audit(who.username, "AddedToken", f"{new.name} as {new.role} for {what}")
@@ -76,5 +91,5 @@ def add_token(new: NewToken, station: Station, who: Viewer) -> TokenSecret:
 @router.delete("/tokens/{token_id}", status_code=204)
 def remove_token(token_id: Id, station: Station, who: Viewer) -> None:
     if not station.accounts.remove_token(who.username, token_id):
-        raise Problem(404, "You have no such token.")
+        raise Problem(404, coded("token-not-yours", "You have no such token."))
     station.records.audit(who.username, "RemovedToken", token_id)

@@ -31,6 +31,7 @@ from base_station.views.answer import to_ms_or_none
 from base_station.views.stored_units import stored_sensors
 from base_station.views.wire import UnitView, WornSensorView
 from shared.channels import validate_unit_id
+from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.messages.station import RegisterUnit, SetReference, SetStart
 
@@ -128,7 +129,9 @@ def _registered_or_404(station: Services, unit_id: str) -> UnitView:
     for view in station.picture().units:
         if view.unit_id == unit_id and view.registered:
             return view
-    raise Problem(404, f"There is no registered unit {unit_id}.")
+    raise Problem(
+        404, coded("unit-not-listed", "There is no registered unit {unit}.", unit=unit_id)
+    )
 
 
 def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:

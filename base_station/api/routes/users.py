@@ -16,6 +16,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.login import give_cookie
 from base_station.api.services import Logins
 from base_station.views.answer import to_ms
+from shared.coded_text import coded
 
 router = APIRouter(tags=["users"])
 
@@ -102,10 +103,12 @@ def change_own_password(
     """Ends all sessions of the user, this one too; who had to change it goes on with another."""
     throttle.check_account(who.username)
     if change.new_password == change.old_password:
-        raise Problem(422, "The new password is the old one; choose another.")
+        raise Problem(
+            422, coded("password-same", "The new password is the old one; choose another.")
+        )
     if not station.accounts.verify_password(who.username, change.old_password):
         station.records.audit(who.username, "PasswordRefused", "")
-        raise Problem(403, "The old password is wrong.")
+        raise Problem(403, coded("password-wrong", "The old password is wrong."))
     station.accounts.change_user(who.username, change.new_password, None)
     station.records.audit(who.username, "ChangedOwnPassword", "")
     if who.must_change_password:

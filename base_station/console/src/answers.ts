@@ -658,6 +658,8 @@ export interface ProblemDocument {
   title: string;
   status: number;
   detail: string;
+  code: string;
+  parameters: Record<string, string | number>;
 }
 
 export interface Progress {

@@ -1,6 +1,7 @@
 /** Requests to the station over HTTP, and its errors. */
 import { signal } from "@preact/signals";
 import { t } from "./language/translate";
+import { refusalText } from "./live/codedText";
 
 /** The station refused or could not be reached; the text is for a person. */
 export class ApiError extends Error {
@@ -118,11 +119,10 @@ async function answer(path: string, init: RequestInit): Promise<Response> {
   return response;
 }
 
-/** The sentence of a problem document (RFC 9457). */
+/** What a problem document (RFC 9457) says. */
 async function reason(response: Response): Promise<string> {
-  const body: unknown = await response.json().catch(() => null);
-  const detail = (body as { detail?: unknown } | null)?.detail;
-  return typeof detail === "string" ? detail : t("connection.answered", { status: response.status });
+  const document: unknown = await response.json().catch(() => null);
+  return refusalText(document) ?? t("connection.answered", { status: response.status });
 }
 
 export const id = encodeURIComponent;

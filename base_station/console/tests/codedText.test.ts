@@ -1,7 +1,7 @@
 /** Texts by the codes of the station, in every language. */
 import { afterEach, describe, expect, test } from "vitest";
 import { show } from "../src/language/catalogue";
-import { codedText, problemTexts } from "../src/live/codedText";
+import { codedText, problemTexts, refusalText } from "../src/live/codedText";
 
 const FULL = {
   code: "log-waits",
@@ -62,5 +62,32 @@ describe("a text of the station", () => {
   test("of a foreign unit with a code of ours and other parameters stays as the unit wrote it", async () => {
     await show("de");
     expect(codedText({ code: "no-reading", texts: {}, numbers: {} }, "kaputt")).toBe("kaputt");
+  });
+});
+
+describe("a refusal of the station", () => {
+  const WRONG = { detail: "the place is 1200 m from the plan's building", code: "place-too-far", parameters: { away_m: 1200, most_m: 500 } };
+
+  test("is composed in the chosen language from code and parameters", async () => {
+    await show("de");
+    expect(refusalText(WRONG)).toMatch(/^Der Ort ist 1\.200 m vom Gebäude des Plans entfernt; höchstens 500 m/);
+    expect(refusalText({ detail: "Name or password is wrong.", code: "login-wrong", parameters: {} })).toBe(
+      "Name oder Passwort ist falsch.",
+    );
+  });
+
+  test("of another version, or without a code, stays as the station wrote it", async () => {
+    await show("de");
+    expect(refusalText({ ...WRONG, code: "of-a-later-version" })).toBe(WRONG.detail);
+    expect(refusalText({ ...WRONG, parameters: { other: 1 } })).toBe(WRONG.detail);
+    expect(refusalText({ ...WRONG, parameters: "none" })).toBe(WRONG.detail);
+    expect(refusalText({ detail: WRONG.detail })).toBe(WRONG.detail);
+    expect(refusalText({ detail: WRONG.detail, code: "", parameters: {} })).toBe(WRONG.detail);
+  });
+
+  test("is none where something else answers", () => {
+    expect(refusalText(null)).toBeUndefined();
+    expect(refusalText("<html>")).toBeUndefined();
+    expect(refusalText({ error: "bad gateway" })).toBeUndefined();
   });
 });

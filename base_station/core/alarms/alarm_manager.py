@@ -130,7 +130,7 @@ class AlarmManager:
         if isinstance(alarm, str):
             return alarm
         if alarm.state is AlarmState.ACKNOWLEDGED:
-            return f"{alarm.by} has acknowledged it already"
+            return coded("alarm-acknowledged", "{by} has acknowledged it already", by=alarm.by)
         alarm.state, alarm.by = AlarmState.ACKNOWLEDGED, by
         alarm.mark_changed(state.t_ns)
         return alarm
@@ -344,7 +344,11 @@ def _alarm_as_seen(state: StationState, action: AcknowledgeAlarm | ResolveAlarm)
     alarms = (one for one in state.alarms.values() if one.alarm_id == action.alarm_id)
     alarm = next((one for one in alarms if one.is_open), None)
     if alarm is None:
-        return f"no open alarm {action.alarm_id}"
+        return coded("alarm-not-open", "no open alarm {alarm}", alarm=action.alarm_id)
     if action.last_raised_ms not in (0, alarm.last_raised_ns // NS_PER_MS):
-        return f"this has been raised anew since you saw it, look again: {alarm.text}"
+        return coded(
+            "alarm-raised-anew",
+            "this has been raised anew since you saw it, look again: {alarm}",
+            alarm=alarm.text,
+        )
     return alarm

@@ -27,9 +27,15 @@ def give(state: StationState, by: str, action: SendCommand) -> Iterator[SentComm
     """
     ended = state.commands.get(action.ended_command_id)
     if ended is None or ended.kind is not CommandKind.EVACUATE:
-        raise UserError(f"there is no evacuation {action.ended_command_id} to end")
+        raise UserError(
+            coded(
+                "evacuation-unknown",
+                "there is no evacuation {command} to end",
+                command=action.ended_command_id,
+            )
+        )
     if ended.ended_ns is not None:
-        raise UserError("this evacuation is over already")
+        raise UserError(coded("evacuation-over", "this evacuation is over already"))
     evacuations = [
         one
         for one in state.commands.values()
@@ -39,7 +45,12 @@ def give(state: StationState, by: str, action: SendCommand) -> Iterator[SentComm
     ordered_again = {unit_id for one in evacuations[place + 1 :] for unit_id in one.deliveries}
     recipients = [unit_id for unit_id in ended.deliveries if unit_id not in ordered_again]
     if not recipients:
-        raise UserError("all of them were ordered out again since: end that evacuation")
+        raise UserError(
+            coded(
+                "evacuation-ordered-anew",
+                "all of them were ordered out again since: end that evacuation",
+            )
+        )
     for evacuation in evacuations[: place + 1]:
         if _end_for(evacuation, recipients, action.command_id, state.t_ns) or evacuation is ended:
             yield evacuation

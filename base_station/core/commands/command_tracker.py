@@ -80,12 +80,30 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
     """Acknowledge by radio.  Raises UserError where there is nothing to confirm."""
     found = delivery_of(state, action.unit_id, action.command_id)
     if found is None:
-        raise UserError(f"no command {action.command_id} to {action.unit_id}")
+        raise UserError(
+            coded(
+                "command-not-to-unit",
+                "no command {command} to {unit}",
+                command=action.command_id,
+                unit=action.unit_id,
+            )
+        )
     command, delivery = found
     if not command.notifies_wearer:
-        raise UserError("such a command concerns the unit alone: it is not answered by radio")
+        raise UserError(
+            coded(
+                "command-not-by-radio",
+                "such a command concerns the unit alone: it is not answered by radio",
+            )
+        )
     if delivery.acknowledged_ns is not None:
-        raise UserError(f"{delivery.acknowledged_by} has acknowledged it already")
+        raise UserError(
+            coded(
+                "command-acknowledged",
+                "{by} has acknowledged it already",
+                by=delivery.acknowledged_by,
+            )
+        )
     acknowledge(delivery, state.t_ns, "radio", by)
     return command
 
@@ -105,9 +123,16 @@ def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
         if delivery.acknowledged_via == "radio" and action.unit_id in ("", delivery.unit_id)
     ]
     if entered and command.incident_id and not _is_open(state, command.incident_id):
-        raise UserError("its incident is closed: what was entered in it stays as it is")
+        raise UserError(
+            coded(
+                "command-incident-closed",
+                "its incident is closed: what was entered in it stays as it is",
+            )
+        )
     if entered and command.ended_ns is not None:
-        raise UserError("the order is over: what was entered for it stays as it is")
+        raise UserError(
+            coded("command-over", "the order is over: what was entered for it stays as it is")
+        )
     for delivery in entered:
         delivery.acknowledged_ns, delivery.acknowledged_by = None, ""
         delivery.acknowledged_via = ""
@@ -209,28 +234,55 @@ def _is_open(state: StationState, incident_id: str) -> bool:
 def check_new(state: StationState, action: SendCommand) -> None:
     """Raise UserError where an order has no id of its own, or no time in which it is answered."""
     if not action.command_id or command_of(state, action.command_id) is not None:
-        raise UserError(f"a command needs an id of its own, not {action.command_id!r}")
+        raise UserError(
+            coded(
+                "command-id-taken",
+                "a command needs an id of its own, not {command!r}",
+                command=action.command_id,
+            )
+        )
     if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
-        raise UserError(f"a command lasts up to a day, not {action.lasts_s} s")
+        raise UserError(
+            coded(
+                "command-lasts",
+                "a command lasts up to a day, not {lasts_s} s",
+                lasts_s=action.lasts_s,
+            )
+        )
 
 
 def _check(state: StationState, action: SendCommand) -> None:
     check_new(state, action)
     if action.kind is CommandKind.UNKNOWN:
-        raise UserError("this station does not know this kind of command")
+        raise UserError(
+            coded("command-kind-unknown", "this station does not know this kind of command")
+        )
     if action.kind in OF_STATION:
-        raise UserError("the station sends this by itself; it cannot be ordered")
+        raise UserError(
+            coded("command-of-station", "the station sends this by itself; it cannot be ordered")
+        )
     if action.kind is CommandKind.ALL_CLEAR:
-        raise UserError("an all clear ends an evacuation: name that")
+        raise UserError(coded("all-clear-names-none", "an all clear ends an evacuation: name that"))
     if action.kind is CommandKind.TEXT and not action.text.strip():
-        raise UserError("a message needs a text")
+        raise UserError(coded("message-empty", "a message needs a text"))
     if not math.isfinite(action.position_rate_hz):
-        raise UserError("a position rate is no finite number")
+        raise UserError(coded("position-rate-not-finite", "a position rate is no finite number"))
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew or floor that has members, everyone")
+        raise UserError(
+            coded(
+                "command-addressee",
+                "say one of: a unit, a crew or floor that has members, everyone",
+            )
+        )
     most = 2 * MAX_OPEN if action.kind is CommandKind.EVACUATE else MAX_OPEN
     if sum(map(_is_open_order, state.commands.values())) >= most:
-        raise UserError(f"{most} commands are open; wait until some are answered")
+        raise UserError(
+            coded(
+                "commands-too-many",
+                "{most} commands are open; wait until some are answered",
+                most=most,
+            )
+        )
 
 
 def _is_open_order(command: SentCommand) -> bool:
@@ -260,7 +312,13 @@ def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
         recipients = (
             action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         )
-        raise UserError(f"no registered unit can receive this: {recipients}")
+        raise UserError(
+            coded(
+                "command-recipients-none",
+                "no registered unit can receive this: {recipients}",
+                recipients=recipients,
+            )
+        )
     return found
 
 

@@ -28,9 +28,15 @@ def stop(state: StationState, action: SendCommand) -> SentCommand:
     """Stop the signal of a LOCATE.  Raises UserError where none is on, or on its way."""
     command = state.commands.get(action.ended_command_id)
     if command is None or command.kind is not CommandKind.LOCATE:
-        raise UserError(f"there is no LOCATE {action.ended_command_id} to stop")
+        raise UserError(
+            coded(
+                "locate-unknown",
+                "there is no LOCATE {command} to stop",
+                command=action.ended_command_id,
+            )
+        )
     if not command.is_open:
-        raise UserError("no unit signals its place by this order any more")
+        raise UserError(coded("locate-over", "no unit signals its place by this order any more"))
     command.ended_ns = state.t_ns
     for delivery in command.deliveries.values():
         if command.awaits(delivery):

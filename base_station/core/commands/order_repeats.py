@@ -9,6 +9,7 @@ from __future__ import annotations
 from base_station.core.state import StationState
 from base_station.core.state.command import Delivery, SentCommand
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import SendCommand
 
@@ -20,11 +21,17 @@ def send_again(state: StationState, action: SendCommand) -> SentCommand:
     """
     command = state.commands.get(action.repeats)
     if command is None:
-        raise UserError(f"there is no order {action.repeats} to send again")
+        raise UserError(
+            coded(
+                "order-unknown", "there is no order {command} to send again", command=action.repeats
+            )
+        )
     if not command.asks_wearer:
-        raise UserError("only an order that asks for an answer can be sent again")
+        raise UserError(
+            coded("order-not-repeatable", "only an order that asks for an answer can be sent again")
+        )
     if command.ended_ns is not None:
-        raise UserError("this order is over: give a new one")
+        raise UserError(coded("order-over", "this order is over: give a new one"))
     recipients = [one for one in _unanswered(command) if action.unit_id in ("", one.unit_id)]
     if not recipients:
         raise UserError(f"{action.unit_id or 'everybody'} has acknowledged it, or never had it")

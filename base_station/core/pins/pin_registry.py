@@ -16,6 +16,7 @@ from base_station.core.state.pin import WAITING, Beacon, Pin, reach_std_m
 from base_station.core.state.resolve_queue import request_resolve
 from base_station.site.plan import Plan
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import rotate
 from shared.messages.pins import (
@@ -108,12 +109,24 @@ def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
     """Raises UserError for pins of several sites, or for too many."""
     sites = {state.units[unit_id].site_id for pin in pins for unit_id in units_of(pin)}
     if len(sites) > 1:
-        raise UserError("these units are in different incidents: they have no place in common")
+        raise UserError(
+            coded(
+                "pin-incidents-differ",
+                "these units are in different incidents: they have no place in common",
+            )
+        )
     site = state.sites[sites.pop()]
     new = sum(pin.pin_id not in site.pins for pin in pins)
     if new and len(site.pins) + new > MAX_PINS:
         there = len(site.pins)
-        raise UserError(f"there is room for {MAX_PINS} pins, not {there + new}; remove some first")
+        raise UserError(
+            coded(
+                "pins-too-many",
+                "there is room for {most} pins, not {wanted}; remove some first",
+                most=MAX_PINS,
+                wanted=there + new,
+            )
+        )
     changed: set[str] = set()
     for pin in pins:
         earlier = site.pins.get(pin.pin_id)
@@ -132,7 +145,7 @@ def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
 def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin]:
     """Pins of a common start position, for the units that were switched on after its time."""
     if not action.unit_ids:
-        raise UserError("no unit to place: name at least one unit")
+        raise UserError(coded("pin-no-unit", "no unit to place: name at least one unit"))
     _check_place(state.site_of(action.unit_ids[0]), action)
     common = msgspec.structs.asdict(action)
     del common["pin_id"], common["unit_ids"], common["t_ns"]
@@ -148,7 +161,7 @@ def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin
 
 def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
     if action.unit_id == action.other_unit_id:
-        raise UserError("a unit cannot meet itself: name two units")
+        raise UserError(coded("pin-meets-itself", "a unit cannot meet itself: name two units"))
     for unit_id in (action.unit_id, action.other_unit_id):
         state.registered_unit(unit_id)
         _check_time(state, unit_id, action.t_ns)
@@ -172,7 +185,9 @@ def _remove(state: StationState, pin_id: str) -> set[str]:
     for site in state.sites.values():
         changed |= drop(site, lambda pin: pin.pin_id == pin_id or pin.pin_id.startswith(group))
     if not changed:
-        raise UserError(f"there is no pin {pin_id}; it may have been removed already")
+        raise UserError(
+            coded("pin-gone", "there is no pin {pin}; it may have been removed already", pin=pin_id)
+        )
     return changed
 
 
@@ -180,7 +195,9 @@ def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]
     site = state.sites[state.site_id_of(action.incident_id)]
     _check_place(site, action)
     if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
-        raise UserError("how far a beacon reaches is a number of metres, 0 or more")
+        raise UserError(
+            coded("beacon-reach", "how far a beacon reaches is a number of metres, 0 or more")
+        )
     earlier = site.beacons.get(action.beacon_id)
     for pin in _sightings_of(site, action.beacon_id):
         if not pin.is_ranged:
@@ -201,7 +218,13 @@ _BEACON_FIELDS = ("beacon_id", "label", "north_m", "east_m", "floor", "std_m", "
 def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:
     site = next((one for one in state.sites.values() if beacon_id in one.beacons), None)
     if site is None:
-        raise UserError(f"there is no beacon {beacon_id}; it may have been removed already")
+        raise UserError(
+            coded(
+                "beacon-gone",
+                "there is no beacon {beacon}; it may have been removed already",
+                beacon=beacon_id,
+            )
+        )
     del site.beacons[beacon_id]
     return {pin.unit_id for pin in _sightings_of(site, beacon_id)}
 
@@ -236,7 +259,7 @@ def _early_s(state: StationState, unit_id: str, t_ns: int) -> float:
 
 def _check_place(site: SiteState, action: SetPin | StartTogether | PlaceBeacon) -> None:
     if not (math.isfinite(action.north_m) and math.isfinite(action.east_m)):
-        raise UserError("the place is no pair of numbers")
+        raise UserError(coded("place-no-numbers", "the place is no pair of numbers"))
     _check_std(action.std_m)
     if not isinstance(action, PlaceBeacon) and action.heading_rad is not None:
         _check_heading(action.heading_rad, action.heading_std_rad)
@@ -247,8 +270,13 @@ def _check_place(site: SiteState, action: SetPin | StartTogether | PlaceBeacon) 
         away_m = plan.away_m(action.north_m, action.east_m)
         if away_m > FURTHEST_M:
             raise UserError(
-                f"the place is {away_m:.0f} m from the plan's building; at most {FURTHEST_M:.0f} m "
-                "make sense"
+                coded(
+                    "place-too-far",
+                    "the place is {away_m:.0f} m from the plan's building; at most "
+                    "{most_m:.0f} m make sense",
+                    away_m=away_m,
+                    most_m=FURTHEST_M,
+                )
             )
 
 
@@ -259,19 +287,40 @@ def _check_floor(plan: Plan | None, floor: int) -> None:
     floors = () if plan is None else [storey.floor for storey in plan.storeys]
     if floors and floor not in floors:
         known = ", ".join(map(str, floors))
-        raise UserError(f"the plan has no floor {floor}; it has: {known}")
+        raise UserError(
+            coded(
+                "floor-not-on-plan",
+                "the plan has no floor {floor}; it has: {known}",
+                floor=floor,
+                known=known,
+            )
+        )
     if not DEEPEST <= floor <= HIGHEST:
-        raise UserError(f"no building has a floor {floor}; from {DEEPEST} to {HIGHEST} make sense")
+        raise UserError(
+            coded(
+                "floor-out-of-range",
+                "no building has a floor {floor}; from {lowest} to {highest} make sense",
+                floor=floor,
+                lowest=DEEPEST,
+                highest=HIGHEST,
+            )
+        )
 
 
 def _check_std(std_m: float) -> None:
     if not (math.isfinite(std_m) and 0.0 < std_m <= LARGEST_STD_M):
         raise UserError(
-            f"an uncertainty of {std_m} m cannot be weighed; say how many metres it may be off, "
-            "more than 0"
+            coded(
+                "uncertainty-unfit",
+                "an uncertainty of {std_m} m cannot be weighed; say how many metres it may "
+                "be off, more than 0",
+                std_m=std_m,
+            )
         )
 
 
 def _check_heading(heading_rad: float, std_rad: float) -> None:
     if not (math.isfinite(heading_rad) and math.isfinite(std_rad) and std_rad > 0.0):
-        raise UserError("a heading needs an angle, and an uncertainty of more than 0")
+        raise UserError(
+            coded("heading-unfit", "a heading needs an angle, and an uncertainty of more than 0")
+        )

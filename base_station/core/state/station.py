@@ -12,7 +12,7 @@ from base_station.core.state.site import OWN_SITE_ID, SiteState
 from base_station.core.state.unit import UnitState
 from base_station.fusion.odometry.path_history import PathHistory
 from shared.channels import tracked_unit
-from shared.coded_text import TextCode
+from shared.coded_text import NO_CODE, TextCode, coded
 from shared.errors import UserError
 from shared.messages import STATION_ID, ExternalMarker, Header
 from shared.messages.station import TakeOver
@@ -25,6 +25,7 @@ class IdempotencyRecord(msgspec.Struct, frozen=True):
     t_ns: int
     created_id: str  # of the command, pin or incident; empty: it made none
     refused: str  # why it had no effect; empty: it had
+    refused_code: TextCode = NO_CODE  # of that text
 
 
 class Counts(msgspec.Struct):
@@ -80,7 +81,13 @@ class StationState(msgspec.Struct):
         """Registered unit of that id; UserError where there is none."""
         unit = self.units.get(unit_id)
         if unit is None or not unit.registered:
-            raise UserError(f"no registered unit {unit_id!r}; register it first")
+            raise UserError(
+                coded(
+                    "unit-not-registered",
+                    "no registered unit {unit!r}; register it first",
+                    unit=unit_id,
+                )
+            )
         return unit
 
     @property
@@ -112,11 +119,20 @@ class StationState(msgspec.Struct):
         opened = self.open_incidents
         if not incident_id and len(opened) > 1:
             names = ", ".join(repr(one.name) for one in opened)
-            raise UserError(f"several incidents are open ({names}); name one of them")
+            raise UserError(
+                coded(
+                    "incidents-several",
+                    "several incidents are open ({incidents}); name one of them",
+                    incidents=names,
+                )
+            )
         found = [one for one in opened if incident_id in ("", one.incident_id)]
         if not found:
-            wanted = f"no open incident {incident_id}"
-            raise UserError(wanted if incident_id else "no incident is open")
+            if not incident_id:
+                raise UserError(coded("no-open-incident", "no incident is open"))
+            raise UserError(
+                coded("incident-not-open", "no open incident {incident}", incident=incident_id)
+            )
         return found[0]
 
     def site_id_of(self, incident_id: str) -> str:
@@ -124,7 +140,13 @@ class StationState(msgspec.Struct):
         if not incident_id:
             return OWN_SITE_ID
         if incident_id not in self.incidents:
-            raise UserError(f"no incident {incident_id} is open, nor was closed last")
+            raise UserError(
+                coded(
+                    "incident-gone",
+                    "no incident {incident} is open, nor was closed last",
+                    incident=incident_id,
+                )
+            )
         return self.incidents[incident_id].site_id
 
     @property

@@ -60,7 +60,7 @@ class LogProcess:
                 raise StoreError("the process that read the log has ended; ask again")
             message = read(encoded)
             if isinstance(message, wire.Failure):
-                raise StoreError(message.reason)
+                raise message.error()
             if not isinstance(message, wire.Damage):
                 return message
             self.note_damage(message.what)

@@ -26,7 +26,7 @@ from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
 from base_station.storage.missing_segments import KnownSegment
 from shared.clock import Clock
-from shared.errors import MemoryLimitError, StoreError
+from shared.errors import StoreError
 
 MEMORY_MB = 575  # mapped for data; of these 75 are not touched, so that some 500 are resident
 
@@ -137,8 +137,8 @@ class PostProcessingProcess(PostProcessor):
                     return self._made(incident, made, _tracks(smoothed), _tracks(raw))
                 case wire.Damage(what):
                     self._place.note_damage(what)
-                case wire.Failure(reason, is_memory):
-                    raise (MemoryLimitError if is_memory else StoreError)(reason)
+                case wire.Failure() as failure:
+                    raise failure.error()
         if self._closed:
             raise StoreError("the station is stopping")
         raise StoreError(

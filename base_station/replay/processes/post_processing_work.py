@@ -64,7 +64,7 @@ def bounded(job: PostProcessingJob, line: FrameChannel) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_DATA, (before, most))
         line.send(Failure(_too_large(job), is_memory=True))
     except MusterError as error:
-        line.send(Failure(str(error), is_memory=False))
+        line.send(Failure.of(error))
 
 
 def incident_of(job: PostProcessingJob) -> IncidentRow:

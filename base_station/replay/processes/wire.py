@@ -14,7 +14,8 @@ from base_station.replay.timelines.unit_timeline import UnitTimeline
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView
-from shared.errors import StoreError
+from shared.coded_text import NO_CODE, TextCode, code_of_text, text_of_error, text_with_code
+from shared.errors import MemoryLimitError, MusterError, StoreError
 
 _LENGTH = struct.Struct("<Q")  # before each message
 
@@ -211,6 +212,15 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
 
     reason: str
     is_memory: bool  # there is not enough of it, nor would there be the next time
+    code: TextCode = NO_CODE  # of the reason
+
+    @staticmethod
+    def of(error: MusterError) -> Failure:
+        return Failure(str(error), is_memory=False, code=code_of_text(text_of_error(error)))
+
+    def error(self) -> StoreError:
+        kind = MemoryLimitError if self.is_memory else StoreError
+        return kind(text_with_code(self.reason, self.code))
 
 
 Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob | TimelineJob | ArchiveJob

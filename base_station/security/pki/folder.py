@@ -20,6 +20,7 @@ from base_station.security.pki.registry import Entry, Registry, load_registry, s
 from base_station.security.pki.station_enrolment import StationEnrolment
 from base_station.storage.private_files import locked, new_folder, write_atomically, write_together
 from shared.channels import validate_unit_id
+from shared.coded_text import coded
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
 from shared.own_files import refuse_links
@@ -110,8 +111,14 @@ class PkiFolder:
             current = registry.current(holder, name)
             if current is not None:
                 raise ConfigError(
-                    f"{holder.value} {name} is enrolled until {current.valid_to:%Y-%m-%d}; "
-                    "renew it for a new certificate, or revoke it when it is lost"
+                    coded(
+                        "still-enrolled",
+                        "{holder} {name} is enrolled until {until}; renew it for a new "
+                        "certificate, or revoke it when it is lost",
+                        holder=holder.value,
+                        name=name,
+                        until=f"{current.valid_to:%Y-%m-%d}",
+                    )
                 )
             common_name = registry.next_common_name(holder, name)
             return self._enrol(registry, holder, name, common_name, valid, connect)
@@ -319,7 +326,10 @@ class PkiFolder:
     def _authority(self) -> Issued:
         if not (self._folder / "authority.key").exists() and self._is_further_station():
             raise ConfigError(
-                "the key of the authority is at the first station alone; enrol and renew there"
+                coded(
+                    "authority-elsewhere",
+                    "the key of the authority is at the first station alone; enrol and renew there",
+                )
             )
         return read_issued(self._read("authority.pem"), self._read("authority.key"))
 

@@ -33,6 +33,7 @@ from base_station.storage.db.models import (
 from base_station.storage.db.tombstones import end
 from base_station.storage.db.unit_tokens import TOKEN_PREFIX, UnitTokens, sha256
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import UserError
 
 SESSION_S = 12 * 3600
@@ -61,7 +62,9 @@ class Accounts:
         password_hash = self._passwords.hash(password)
         with self._store.write() as session:
             if session.get(User, username) is not None:
-                raise UserError(f"there is a user {username!r} already")
+                raise UserError(
+                    coded("user-there", "there is a user {username!r} already", username=username)
+                )
             session.add(
                 User(
                     username=username,
@@ -258,9 +261,21 @@ class Accounts:
                 delete(ApiToken).where(mine, ApiToken.expires_ns <= self._clock.utc_ns())
             )
             if (session.scalar(select(func.count()).where(mine)) or 0) >= MOST_TOKENS:
-                raise UserError(f"{username} has {MOST_TOKENS} tokens; remove one that is not used")
+                raise UserError(
+                    coded(
+                        "tokens-too-many",
+                        "{user} has {most} tokens; remove one that is not used",
+                        user=username,
+                        most=MOST_TOKENS,
+                    )
+                )
             if role > Role.of(_user(session, username).role):
-                raise UserError("a token can have its owner's role or a lower one, not a higher")
+                raise UserError(
+                    coded(
+                        "token-role-too-high",
+                        "a token can have its owner's role or a lower one, not a higher",
+                    )
+                )
             session.add(
                 ApiToken(
                     token_id=token_id,
@@ -318,7 +333,7 @@ def _is_own(username: str) -> ColumnElement[bool]:
 def _user(session: Session, username: str) -> User:
     user = session.get(User, username)
     if user is None:
-        raise UserError(f"there is no user {username!r}")
+        raise UserError(coded("user-unknown", "there is no user {username!r}", username=username))
     return user
 
 
@@ -333,4 +348,10 @@ def _keep_an_administrator(session: Session, user: User) -> None:
         select(func.count()).where(User.role == Role.ADMINISTRATOR.word)
     )
     if user.role == Role.ADMINISTRATOR.word and administrators == 1:
-        raise UserError(f"{user.username!r} is the only administrator; make another one first")
+        raise UserError(
+            coded(
+                "last-administrator",
+                "{user!r} is the only administrator; make another one first",
+                user=user.username,
+            )
+        )

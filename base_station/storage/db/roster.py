@@ -24,6 +24,7 @@ from base_station.storage.db.models import Assignment, PersonRow, Unit
 from base_station.storage.db.pages import newest
 from base_station.storage.db.people_import import ImportStep, ListedPerson, import_steps
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import UserError
 
 
@@ -134,7 +135,11 @@ class Roster:
             steps = import_steps(on_roster, listed)
             for step in steps:
                 if step.kind == "ambiguous":
-                    raise UserError(f"{step.name} is the name of two people here")
+                    raise UserError(
+                        coded(
+                            "name-of-two", "{name} is the name of two people here", name=step.name
+                        )
+                    )
                 person = by_id.get(step.person_id)
                 if person is None:
                     person = self._new_row(step.person_id, step.name, step.crew, step.role)
@@ -152,7 +157,14 @@ class Roster:
                 return False
             worn = _worn_by(session, person_id)
             if worn:
-                raise UserError(f"{person.name} wears {', '.join(worn)}; unassign that first")
+                raise UserError(
+                    coded(
+                        "person-wears",
+                        "{name} wears {units}; unassign that first",
+                        name=person.name,
+                        units=", ".join(worn),
+                    )
+                )
             person.removed_ns = self._clock.utc_ns()
             person.photo = person.photo_hash = None
         self._known[person_id] = known_person(person)

@@ -18,6 +18,7 @@ from base_station.storage.db.database import Database
 from base_station.storage.db.models import ApiToken, User
 from base_station.storage.db.tombstones import end
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import UserError
 
 TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
@@ -44,12 +45,19 @@ class UnitTokens:
         secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
         with self._store.write() as session:
             if session.get(User, by) is None:
-                raise UserError(f"there is no user {by!r}")
+                raise UserError(coded("token-maker-unknown", "there is no user {user!r}", user=by))
             of_unit = ApiToken.unit_id == unit_id
             ended = ApiToken.expires_ns <= self._clock.utc_ns()
             session.execute(delete(ApiToken).where(of_unit, ended))
             if (session.scalar(select(func.count()).where(of_unit)) or 0) >= MOST_OF_A_UNIT:
-                raise UserError(f"{unit_id} has {MOST_OF_A_UNIT} tokens; remove one of them first")
+                raise UserError(
+                    coded(
+                        "unit-tokens-too-many",
+                        "{unit} has {most} tokens; remove one of them first",
+                        unit=unit_id,
+                        most=MOST_OF_A_UNIT,
+                    )
+                )
             session.add(
                 ApiToken(
                     token_id=token_id,

@@ -10,7 +10,9 @@ from shared.coded_text import (
     code_of_text,
     coded,
     join_texts,
+    map_texts,
     text_of_error,
+    text_with_code,
 )
 
 
@@ -64,3 +66,19 @@ def test_text_of_an_error_keeps_the_code_with_which_it_was_raised() -> None:
     error = ValueError(coded("gone", "it is gone"))
     assert code_of_text(text_of_error(error)).code == "gone"
     assert text_of_error(KeyError("plain")) == "'plain'"
+
+
+def test_text_gets_back_the_code_that_was_sent_beside_it() -> None:
+    text = coded("worn", "{name} wears it", name="Ada")
+    again = text_with_code(str(text), code_of_text(text))
+    assert again == text
+    assert code_of_text(again) == code_of_text(text)
+    assert code_of_text(text_with_code("plain", NO_CODE)) is NO_CODE
+
+
+def test_text_and_the_texts_among_its_parameters_are_changed_together() -> None:
+    text = coded("worn", "{name} wears {count}", name="#7", count=2)
+    shown = map_texts(text, lambda one: one.replace("#7", "Ada"))
+    assert shown == "Ada wears 2"
+    assert code_of_text(shown) == TextCode("worn", {"name": "Ada"}, {"count": 2.0})
+    assert code_of_text(map_texts("#7", str.lower)) is NO_CODE

@@ -6,7 +6,18 @@ import { knownLabel, knownMessage, label, t } from "../language/translate";
 import type { HealthView, TextCodeView } from "../wire";
 
 /** The parts with texts of the station and of its units; each code is in one of them. */
-const PARTS = ["problem", "unit_fault", "coded_reason", "drawing_note"] as const satisfies readonly PartName[];
+const PARTS = [
+  "problem",
+  "unit_fault",
+  "coded_reason",
+  "drawing_note",
+  "refusal_access",
+  "refusal_people",
+  "refusal_incident",
+  "refusal_plan",
+  "refusal_past",
+  "refusal_station",
+] as const satisfies readonly PartName[];
 
 /** The text in the chosen language; the English one where there is no code, as of an earlier version, or one
  * of another version or of a foreign unit. */
@@ -49,6 +60,18 @@ function codeWithin({ texts, numbers }: TextCodeView, name: string): TextCodeVie
         .map(([one, value]) => [one.slice(prefix.length), value]),
     );
   return { code: texts[prefix] ?? "", texts: within(texts), numbers: within(numbers) };
+}
+
+/** The text of a problem document (RFC 9457): its `detail`, in English, where its code is none or that of
+ * another version; nothing where it is no such document, as a proxy may have answered. */
+export function refusalText(document: unknown): string | undefined {
+  const { detail, code, parameters } = (document ?? {}) as Record<string, unknown>;
+  if (typeof detail !== "string") return undefined;
+  const given = Object.entries(parameters ?? {});
+  const texts = given.filter((one): one is [string, string] => typeof one[1] === "string");
+  const numbers = given.filter((one): one is [string, number] => typeof one[1] === "number");
+  const coded = { code: String(code ?? ""), texts: Object.fromEntries(texts), numbers: Object.fromEntries(numbers) };
+  return codedText(coded, detail);
 }
 
 /** A number in the unit that its name ends with; others are written by the message. */

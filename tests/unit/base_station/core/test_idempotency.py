@@ -26,6 +26,7 @@ from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.storage.recorder import Recorder
 from shared.clock import SystemClock
+from shared.coded_text import NO_CODE, coded
 from shared.messages import STATION_ID, CommandKind, Header, OperatorAction
 from shared.messages.station import (
     Action,
@@ -89,10 +90,12 @@ def test_key_with_another_action_or_person_is_another_request() -> None:
 def test_reasons_of_refusals_are_erased_with_the_person_they_name() -> None:
     state = StationState()
     refused, well = idempotent_action_id("ada", "a", b""), idempotent_action_id("ada", "b", b"")
-    record_result(state, done(refused), "Ada is resting already")
+    record_result(state, done(refused), coded("rests", "{name} is resting already", name="Ada"))
     record_result(state, done(well), "")
     erase_reasons(state)
-    assert [one.refused for one in state.idempotency_records.values()] == [ERASED_TEXT, ""]
+    results = state.idempotency_records.values()
+    assert [one.refused for one in results] == [ERASED_TEXT, ""]
+    assert [one.refused_code for one in results] == [NO_CODE, NO_CODE]
 
 
 def test_restarted_station_answers_repeated_requests(tmp_path: Path) -> None:

@@ -22,6 +22,12 @@ import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
 import { plan_tools, plan_view, plan_form, drawing, pin, direction, section, stack } from "./plan_tools";
 import { problem } from "./problems";
 import { radio_audio } from "./radio_audio";
+import { refusal_access } from "./refusals_access";
+import { refusal_incident } from "./refusals_incident";
+import { refusal_past } from "./refusals_past";
+import { refusal_people } from "./refusals_people";
+import { refusal_plan } from "./refusals_plan";
+import { refusal_station } from "./refusals_station";
 import { replay, transport, timeline, crossing } from "./replay";
 import { route } from "./rescue";
 import { people_list, person, people_import, par, rescue } from "./roster";
@@ -106,6 +112,12 @@ export const en = {
   problem,
   radio_audio,
   recording,
+  refusal_access,
+  refusal_incident,
+  refusal_past,
+  refusal_people,
+  refusal_plan,
+  refusal_station,
   replay,
   rescue,
   role,

@@ -1,0 +1,5 @@
+/** Refusals about imports, replays, reports, exports and erasure, by their codes, in German. */
+import type { Part } from "../catalogue";
+
+export const refusal_past: Part<"refusal_past"> = {
+};

@@ -1,0 +1,53 @@
+/** Refusals about people, units and enrolments, by their codes, in German. */
+import type { Part } from "../catalogue";
+
+export const refusal_people: Part<"refusal_people"> = {
+  "authority-elsewhere":
+    "Der Schlüssel der Zertifizierungsstelle ist nur an der ersten Station; enrolen und erneuern Sie dort",
+  "csv-columns-alike":
+    "Zeile {line} der Datei hat zwei Spalten mit derselben Bedeutung: {first} und {second}; entfernen Sie eine",
+  "csv-empty":
+    "Die Datei ist leer",
+  "csv-is-workbook":
+    "Diese Datei ist eine Arbeitsmappe; speichern Sie sie in der Tabellenkalkulation als CSV, und senden Sie diese",
+  "csv-line-unreadable":
+    "Zeile {line} der Datei ist nicht lesbar: {error}; suchen Sie nach einem Anführungszeichen, das nicht geschlossen ist",
+  "csv-no-names":
+    "Zeile {line} der Datei nennt keine Spalte mit Namen; die erste Zeile braucht eine, die „Name“ heißt (oder „First name“ und „Last name“), und kann „Crew“ und „Role“ haben",
+  "csv-nobody":
+    "Die Datei hat eine Zeile mit Spaltennamen und keine Person darunter",
+  "csv-too-many":
+    "Die Datei hat mehr als {most} Personen; senden Sie die, die zu einem Einsatz kommen können, oder mehrere Dateien",
+  "enrolment-not-private":
+    "Ein Enrolment enthält einen privaten Schlüssel, den andere im Netz auf dem Weg zu Ihnen lesen könnten: Bieten Sie die Konsole über TLS an, oder enrolen Sie am Rechner der Station.",
+  "enrols-none":
+    "Diese Station enrolt jetzt keine Geräte: Sie gibt nur wieder oder startet noch.",
+  "members-none-named":
+    "Kein Gerät zuzuordnen: Nennen Sie mindestens eines",
+  "members-without-units":
+    "Niemand davon trägt ein registriertes Gerät: Ordnen Sie zuerst ein Gerät zu.",
+  "name-of-two":
+    "{name} ist hier der Name von zwei Personen",
+  "no-authority":
+    "Diese Station hat keine Zertifizierungsstelle, sodass kein Gerät enrolt werden kann: Erstellen Sie eine mit „muster pki init“, und lassen Sie den Bus auf tls/ hören.",
+  "not-a-member":
+    "{unit} ist nicht im Einsatz {incident}.",
+  "people-faulty":
+    "Niemand wurde hinzugefügt: Zeile {line}: {fault}{more, plural, =1 {} other { (der erste von # Fehlern)}}",
+  "person-unknown":
+    "Diese Person gibt es nicht.",
+  "person-wears":
+    "{name} trägt {units}; heben Sie zuerst diese Zuordnung auf",
+  "photo-missing":
+    "Von dieser Person gibt es kein Foto.",
+  "photo-too-many-bytes":
+    "Das Foto ist größer als {most_mb}",
+  "photo-unreadable":
+    "Das Foto ist nicht lesbar; senden Sie eine Datei im Format JPEG, PNG oder WebP",
+  "still-enrolled":
+    "{holder} {name} ist bis {until} enrolt; erneuern Sie das Zertifikat, oder sperren Sie es, wenn es verloren ist",
+  "unit-not-listed":
+    "Ein registriertes Gerät {unit} gibt es nicht.",
+  "unit-not-registered":
+    "Ein registriertes Gerät „{unit}“ gibt es nicht; registrieren Sie es zuerst",
+};

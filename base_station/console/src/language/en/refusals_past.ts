@@ -1,0 +1,3 @@
+/** Refusals about imports, replays, reports, exports and erasure, by their codes. */
+export const refusal_past = {
+};
