@@ -10,6 +10,7 @@ from base_station.fusion.horizontal.map_aided import SavedMapAided
 from base_station.fusion.odometry.recent_path import RecentPath
 from base_station.fusion.vertical.height import SavedHeight
 from shared.messages import Position
+from shared.path_noise import PathNoise
 
 
 class FuserMemory(msgspec.Struct):
@@ -22,6 +23,7 @@ class FuserMemory(msgspec.Struct):
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
     height_assumed: bool = True  # and no evidence yet that it did not begin upstairs
     last: Position | None = None
+    path_noise: PathNoise | None = None  # as the unit's tracker states it
     path: RecentPath = msgspec.field(default_factory=RecentPath)
     fix_t_mono_ns: int | None = None  # the newest accepted fix
     wander_t_mono_ns: int | None = None

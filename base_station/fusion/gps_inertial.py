@@ -32,12 +32,14 @@ from base_station.fusion.odometry.recent_path import RecentPath
 from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_estimates import PathEstimates
+from base_station.fusion.stated_noise import with_path_noise
 from base_station.fusion.vertical.height import HeightFilter
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
+from shared.path_noise import PathNoise
 
 INSIDE_NS = 10 * NS_PER_S  # without a fix for as long: inside, where there is no plan
 
@@ -63,15 +65,16 @@ class GpsInertialFuser(PathEstimates):
     _previous_run: GpsInertialFuser | None
 
     def __init__(self, kind: GpsInertial, memory: FuserMemory) -> None:
-        self._kind = kind
+        self._usual_kind = kind  # for a unit that states no noise of its path
+        self._kind = with_path_noise(kind, memory.path_noise)
         self._memory = memory
         self._horizontal = MapAidedFilter(
-            CompassAidedFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
+            CompassAidedFilter(self._kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
         )
         self._horizontal.set_drift_std(kind.drift_radps)
         self._height = HeightFilter(kind)
-        self._odometry = OdometryIncrements(kind, memory.odometry)
-        self._fixes = GnssUpdater(kind, memory, self._horizontal, self._height)
+        self._odometry = OdometryIncrements(self._kind, memory.odometry)
+        self._fixes = GnssUpdater(self._kind, memory, self._horizontal, self._height)
         self._previous_run = (
             kind.restore(memory.previous_run) if memory.previous_run else None
         )  # the run before this
@@ -126,13 +129,14 @@ class GpsInertialFuser(PathEstimates):
                 return "older than the last position"
             if duration_s < 0.0:
                 self._on_clock_set_back(t_ns)
-            if jumped_m := jump_m(self._kind, last, position, duration_s):
-                self._horizontal.inflate_place(strayed_m(self._kind, jumped_m, duration_s) ** 2)
-                memory.last, memory.path = position, RecentPath()
-                memory.path.append(position)
-                memory.receiver.forget_path()
-                self._odometry.reset_to(position)
-                return "the unit's own path jumped"
+        self._set_path_noise(position.path_noise)
+        if last is not None and (jumped_m := jump_m(self._kind, last, position, duration_s)):
+            self._horizontal.inflate_place(strayed_m(self._kind, jumped_m, duration_s) ** 2)
+            memory.last, memory.path = position, RecentPath()
+            memory.path.append(position)
+            memory.receiver.forget_path()
+            self._odometry.reset_to(position)
+            return "the unit's own path jumped"
         increment = self._odometry.increment(position, max(duration_s, 0.0))
         self._predict(increment, position.std_down_m)
         self._horizontal.set_drift_std(increment.drift_radps)
@@ -190,6 +194,17 @@ class GpsInertialFuser(PathEstimates):
         self._horizontal.predict(path, increment.place_var_m2, increment.turn_var, noise)
         self._memory.landmarks.add_increment(increment, down_m)
 
+    def _set_path_noise(self, noise: PathNoise | None) -> None:
+        """The tracker of the unit states this noise from now on."""
+        memory = self._memory
+        if noise == memory.path_noise:
+            return
+        kind = with_path_noise(self._usual_kind, noise)
+        memory.path_noise, self._kind = noise, kind
+        self._horizontal.set_scale_std(kind.scale_std)
+        self._odometry = OdometryIncrements(kind, self._odometry.save())
+        self._fixes = GnssUpdater(kind, memory, self._horizontal, self._height)
+
     def _on_clock_set_back(self, t_mono_ns: int) -> None:
         """Drop times of a unit's clock that had been ahead and was set back."""
         memory = self._memory
@@ -223,4 +238,4 @@ class GpsInertialFuser(PathEstimates):
         """Copy of this fuser for positions of the ended run that come late."""
         memory = msgspec.msgpack.decode(self.save(), type=FuserMemory)
         memory.previous_run, memory.path, memory.landmarks = b"", RecentPath(), LandmarkMatcher()
-        return GpsInertialFuser(self._kind, memory)
+        return GpsInertialFuser(self._usual_kind, memory)

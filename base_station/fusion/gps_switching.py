@@ -34,12 +34,14 @@ from base_station.fusion.odometry.recent_path import PathPoint, RecentPath
 from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_estimates import PathEstimates
+from base_station.fusion.stated_noise import with_path_noise
 from base_station.fusion.vertical.height import HeightFilter, SavedHeight
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
+from shared.path_noise import PathNoise
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +76,7 @@ class _Memory(msgspec.Struct):
     assumed: bool = True  # nothing ties the own frame to the incident frame
     height_assumed: bool = True
     last: Position | None = None
+    path_noise: PathNoise | None = None  # as the unit's tracker states it
     path: RecentPath = msgspec.field(default_factory=RecentPath)
     fix_t_mono_ns: int | None = None  # the newest fix
     course_from: _CourseFix | None = None
@@ -87,12 +90,13 @@ class GpsSwitchingFuser(PathEstimates):
     _previous_run: GpsSwitchingFuser | None
 
     def __init__(self, kind: GpsSwitching, memory: _Memory) -> None:
-        self._kind = kind
+        self._usual_kind = kind  # for a unit that states no noise of its path
+        self._kind = with_path_noise(kind, memory.path_noise)
         self._memory = memory
         self._height = HeightFilter(kind)
         if memory.height is not None:
             self._height.load(memory.height)
-        self._odometry = OdometryIncrements(kind, memory.odometry)
+        self._odometry = OdometryIncrements(self._kind, memory.odometry)
         self._previous_run = kind.restore(memory.previous_run) if memory.previous_run else None
 
     def save(self) -> bytes:
@@ -141,12 +145,13 @@ class GpsSwitchingFuser(PathEstimates):
                 return "older than the last position"
             if duration_s < 0.0:
                 self._on_clock_set_back(t_ns)
-            if jumped_m := jump_m(kind, last, position, duration_s):
-                self._hold_place(strayed_m(kind, jumped_m, duration_s) ** 2, position)
-                self._odometry.reset_to(position)
-                memory.last, memory.path = position, RecentPath()
-                memory.path.append(position)
-                return "the unit's own path jumped"
+        self._set_path_noise(position.path_noise)
+        if last is not None and (jumped_m := jump_m(kind, last, position, duration_s)):
+            self._hold_place(strayed_m(kind, jumped_m, duration_s) ** 2, position)
+            self._odometry.reset_to(position)
+            memory.last, memory.path = position, RecentPath()
+            memory.path.append(position)
+            return "the unit's own path jumped"
         self._predict(self._odometry, position, max(duration_s, 0.0))
         memory.last = position
         memory.path.append(position)
@@ -245,6 +250,15 @@ class GpsSwitchingFuser(PathEstimates):
         )
         self._memory.course_from = None
 
+    def _set_path_noise(self, noise: PathNoise | None) -> None:
+        """The tracker of the unit states this noise from now on."""
+        memory = self._memory
+        if noise == memory.path_noise:
+            return
+        memory.path_noise, self._kind = noise, with_path_noise(self._usual_kind, noise)
+        memory.reckoning.scale_std = self._kind.scale_std
+        self._odometry = OdometryIncrements(self._kind, self._odometry.save())
+
     def _on_clock_set_back(self, t_mono_ns: int) -> None:
         """Drop times of a unit's clock that had been ahead and was set back."""
         memory = self._memory
@@ -271,4 +285,4 @@ class GpsSwitchingFuser(PathEstimates):
         """Copy of this fuser for positions of the ended run that come late."""
         memory = msgspec.msgpack.decode(self.save(), type=_Memory)
         memory.previous_run, memory.path = b"", RecentPath()
-        return GpsSwitchingFuser(self._kind, memory)
+        return GpsSwitchingFuser(self._usual_kind, memory)

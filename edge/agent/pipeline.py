@@ -37,7 +37,7 @@ from edge.samples import (
     SightingSample,
 )
 from edge.tracker.choice.interface import Choice, ChoosesTracker
-from edge.tracker.interface import MultiSensorTracker
+from edge.tracker.interface import MultiSensorTracker, TrackBatch
 from edge.tracker.track_rows import empty_rows
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
@@ -46,6 +46,7 @@ from shared.messages import (
     BatteryState,
     EventKind,
     Message,
+    Position,
     PreflightFinding,
     Status,
     Temperature,
@@ -195,7 +196,7 @@ class TrackerPipeline:
             self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
         if self._sensors.is_barometer(sensor):
             self._positions.take_pressure(batch.imu)
-        messages += self._positions.push(track, timeline)
+        messages += self._publish(track, timeline)
         self._body.push(self._places.get(sensor, ""), imu)
         if self._sensors.watch(sensor, imu, track):
             detail = "fell and has not moved since"
@@ -208,7 +209,7 @@ class TrackerPipeline:
         """Return the rows that the tracker still held back, or the samples that were not sent
         yet.
         """
-        messages: list[Message] = [*self._positions.push(self._tracker.finish(), timeline)]
+        messages: list[Message] = [*self._publish(self._tracker.finish(), timeline)]
         if self._raw_uplink is not None:
             messages += self._raw_uplink.finish(timeline)
         return tuple(messages)
@@ -224,6 +225,10 @@ class TrackerPipeline:
     def set_journal_pending(self, pending: int) -> None:
         """Set how many messages are not known to have arrived, for the next status."""
         self._journal_pending = pending
+
+    def _publish(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
+        self._positions.set_path_noise(self._tracker.path_noise)
+        return self._positions.push(track, timeline)
 
     def _follow_choice(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
         """Return the description that names the tracker, once the tracker has chosen itself."""

@@ -15,6 +15,7 @@ from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
 from shared.messages import MagneticNorth, Position
+from shared.path_noise import PathNoise
 
 _PRESSURE_KEPT_NS = 3 * NS_PER_S  # longer than a tracker may hold rows back
 _HEADING_BASE_M = 0.5  # a shorter way says little of its direction
@@ -36,6 +37,7 @@ class PositionPublisher:
         self._quality = Quality.UNKNOWN
         self._reasons = Reason.NONE
         self._is_on_foot = True
+        self._path_noise: PathNoise | None = None
         self.rows_dropped = 0  # rows that were no numbers
         self.floors_climbed = 0
 
@@ -45,6 +47,10 @@ class PositionPublisher:
     def set_mounting(self, *, is_on_foot: bool) -> None:
         """Set whether the unit is worn where its tracker needs it: if not, positions are lost."""
         self._is_on_foot = is_on_foot
+
+    def set_path_noise(self, noise: PathNoise | None) -> None:
+        """Set the process noise that the tracker states of the rows to come."""
+        self._path_noise = noise
 
     def take_pressure(self, imu: ImuBatch) -> None:
         if imu.pressure_pa is None or not len(imu):
@@ -126,6 +132,7 @@ class PositionPublisher:
             quality=quality[0],
             reasons=quality[1],
             magnetic_north=_magnetic_north(track, row),
+            path_noise=self._path_noise,
         )
 
     def _turn(self, north_m: float, east_m: float) -> None:

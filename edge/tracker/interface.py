@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from edge.body_places import FOOT, LEFT_FOOT, RIGHT_FOOT
 from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 from shared.quality import Quality, Reason
 
 __all__ = [
@@ -73,6 +74,13 @@ class TrackBatch:
 class Tracker(Protocol):
     """``push`` in any batching gives the same rows to the last bit."""
 
+    @property
+    def path_noise(self) -> PathNoise | None:
+        """Process noise of the rows that ``push`` returned last; None: a foot's, which those who
+        use the rows take for usual.
+        """
+        ...
+
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
         ...
@@ -124,6 +132,11 @@ class MultiSensorTracker(Protocol):
     than ``MOST_LAG_S`` behind another's.  A sensor that is silent for longer is gone until it comes
     back, and the rows go on with what the others show.
     """
+
+    @property
+    def path_noise(self) -> PathNoise | None:
+        """Process noise of the rows; see ``Tracker``."""
+        ...
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         """Take samples of one sensor; return the rows that have become final."""

@@ -31,6 +31,7 @@ from edge.tracker.track_rows import empty_rows
 from edge.tracker.waist.tracker import WaistTracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
+from shared.path_noise import PathNoise
 
 
 class NoTracker:
@@ -38,6 +39,8 @@ class NoTracker:
 
     Not in ``TRACKERS``, as it keeps none of their promises.
     """
+
+    path_noise: PathNoise | None = None
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         del batch

@@ -17,7 +17,9 @@ from shared.messages.quantise import (
     heading_to_cdeg,
     signed32,
     unsigned32,
+    unsigned_known,
 )
+from shared.path_noise import PathNoise
 from shared.quality import DEGRADED, GOOD, NOT_OF_STEPS, Quality, Reason
 
 
@@ -53,6 +55,7 @@ class Position(msgspec.Struct, frozen=True, gc=False):
     quality: Quality
     reasons: Reason
     magnetic_north: MagneticNorth | None = None  # None: not known
+    path_noise: PathNoise | None = None  # as the tracker models its path; None: not known
 
     @property
     def path_quality(self) -> Quality:
@@ -71,7 +74,7 @@ class Position(msgspec.Struct, frozen=True, gc=False):
         return self.quality if others & stances else min(self.quality, DEGRADED)
 
     def to_wire(self) -> position_pb2.Position:
-        north = self.magnetic_north
+        north, noise = self.magnetic_north, self.path_noise or _UNKNOWN_NOISE
         return position_pb2.Position(
             header=self.header.to_wire(),
             north_mm=signed32(self.north_m, 1e3),
@@ -93,6 +96,9 @@ class Position(msgspec.Struct, frozen=True, gc=False):
             reasons=int(self.reasons),
             magnetic_north_cdeg=0 if north is None else heading_to_cdeg(north.heading_rad),
             magnetic_north_std_cdeg=0 if north is None else angle_std_known_to_cdeg(north.std_rad),
+            path_scale_std_permille=unsigned_known(noise.scale_std or 0.0, 1e3),
+            path_place_std_mm_per_sqrt_m=unsigned_known(noise.place_std_m_per_sqrt_m or 0.0, 1e3),
+            path_turn_std_mrad_per_sqrt_m=unsigned_known(noise.turn_std_rad_per_sqrt_m or 0.0, 1e3),
         )
 
     @staticmethod
@@ -117,6 +123,11 @@ class Position(msgspec.Struct, frozen=True, gc=False):
             known(Quality, wire.quality),
             _reasons(wire.reasons & _ALL_REASONS),
             _magnetic_north(wire),
+            _path_noise(
+                wire.path_scale_std_permille,
+                wire.path_place_std_mm_per_sqrt_m,
+                wire.path_turn_std_mrad_per_sqrt_m,
+            ),
         )
 
 
@@ -129,7 +140,15 @@ def _magnetic_north(wire: position_pb2.Position) -> MagneticNorth | None:
     )
 
 
+_UNKNOWN_NOISE = PathNoise()
 _ALL_REASONS = int(sum(Reason))
+
+
+@lru_cache(maxsize=512)
+def _path_noise(scale_permille: int, place_mm: int, turn_mrad: int) -> PathNoise | None:
+    """Path noise of wire values, of which 0 is not known; None where all are."""
+    stated = [value * 1e-3 if value else None for value in (scale_permille, place_mm, turn_mrad)]
+    return None if not any(stated) else PathNoise(*stated)
 
 
 @lru_cache(maxsize=512)

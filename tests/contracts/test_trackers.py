@@ -149,6 +149,15 @@ def test_fifty_metres_are_fifty_metres_at_any_rate(name, rate_hz, described):
     assert away_m == pytest.approx(50.0, rel=tolerance)
 
 
+def test_noise_of_its_path_is_stated_where_it_is_not_a_foot_s(name, five_strides):
+    noise = make_tracker(name, five_strides.description).path_noise
+    if FOOT in find_tracker(name).worn_on:
+        assert noise is None
+        return
+    assert 0.03 < noise.scale_std < 0.3
+    assert 0.1 < noise.place_std_m_per_sqrt_m < 0.5
+
+
 def test_no_samples_give_no_rows(name, five_strides):
     tracker = make_tracker(name, five_strides.description)
     empty = ImuBatch(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))

@@ -18,6 +18,7 @@ from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.earth_field import EarthField
 from shared.envelope import Stamper
+from shared.path_noise import PathNoise
 
 RATE_HZ = 100
 SENSOR = SensorDescription("fake", RATE_HZ)
@@ -25,6 +26,8 @@ SENSOR = SensorDescription("fake", RATE_HZ)
 
 class StraightAhead:
     """A tracker that has everyone walk north at 1 m/s with a stride a second."""
+
+    path_noise: PathNoise | None = None
 
     def __init__(self, spoil: bool = False, north_std_rad: float = np.inf) -> None:
         self._spoil = spoil

@@ -167,5 +167,11 @@ def evidence_of_one(
     stays = unit_id == state.site_of(unit_id).barometers.reference_id
     start = history.start.position if stays else history.start.in_path
     return UnitEvidence(
-        history.arrays(), start, history.start.begin_ns, places, grid, history.latest.height_assumed
+        history.arrays(),
+        start,
+        history.start.begin_ns,
+        places,
+        grid,
+        history.latest.height_assumed,
+        history.path_noise,
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from base_station.fusion.interface import Fuser, Posterior, Start
 from base_station.fusion.parameters import Parameters
+from base_station.fusion.stated_noise import with_path_noise
 from shared.messages import Position
 
 OPEN_RAD = 0.5  # standard deviation from which a heading is as good as unknown
@@ -44,7 +45,7 @@ def succeed(before: Fuser, after: Fuser, position: Position | None) -> None:
         [estimate.std_north_m**2, between_m2],
         [between_m2, estimate.std_east_m**2],
     ]
-    usual = Parameters()
+    usual = with_path_noise(Parameters(), position.path_noise)
     covariance[2:4, 2:4] = heading_std_rad**2 * np.outer(across, across)
     covariance[2:4, 2:4] += usual.scale_std**2 * np.outer(axis, axis)
     covariance[4, 4] = usual.drift_radps**2

@@ -37,7 +37,7 @@ class CompassAidedFilter(HorizontalFilter):
 
     def __init__(self, scale_std: float, linear_rad: float, wander_radps: float) -> None:
         super().__init__(scale_std, linear_rad, wander_radps)
-        self._parameters = scale_std, linear_rad, wander_radps
+        self._linear_and_wander = linear_rad, wander_radps
         self._without_compass: HorizontalFilter | None = None  # the estimate without the compass
         self._compass = CompassTest()
 
@@ -133,6 +133,11 @@ class CompassAidedFilter(HorizontalFilter):
         self._without_compass = None
         super().set_heading(turn_rad, variance)
 
+    def set_scale_std(self, std: float) -> None:
+        super().set_scale_std(std)
+        if self._without_compass is not None:
+            self._without_compass.set_scale_std(std)
+
     def set_start(
         self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float
     ) -> None:
@@ -170,6 +175,6 @@ class CompassAidedFilter(HorizontalFilter):
             self._without_compass.reframe(turn_rad, north_m, east_m)
 
     def _copy_of(self, saved: SavedHorizontal) -> HorizontalFilter:
-        other = HorizontalFilter(*self._parameters)
+        other = HorizontalFilter(self._scale_std, *self._linear_and_wander)
         other.load(saved)
         return other

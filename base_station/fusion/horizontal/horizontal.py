@@ -142,6 +142,14 @@ class HorizontalFilter:
         self._covariance[:, DRIFT] *= share
         return share
 
+    def set_scale_std(self, std: float) -> None:
+        """Set the prior deviation of the scale. A larger one than before inflates the variance; a
+        smaller one holds for a heading that becomes known from now on.
+        """
+        before, self._scale_std = self._scale_std, std
+        if self._hypotheses is None and std > before:
+            self._inflate_scale(std**2 - before**2)
+
     def set_start(
         self, place_m: tuple[float, float], std_m: float, heading_rad: float, heading_std_rad: float
     ) -> None:
@@ -261,9 +269,12 @@ class HorizontalFilter:
         self._stale = True
         if turn_and_std(*self.moments())[1] < self._linear_rad:
             self._hypotheses = None
-            along = self._mean[2:4] / np.linalg.norm(self._mean[2:4])
-            self._covariance[2:4, 2:4] += self._scale_std**2 * np.outer(along, along)
+            self._inflate_scale(self._scale_std**2)
             self._forget_drift()
+
+    def _inflate_scale(self, variance: float) -> None:
+        along = self._mean[2:4] / np.linalg.norm(self._mean[2:4])
+        self._covariance[2:4, 2:4] += variance * np.outer(along, along)
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
         cosine, sine = math.cos(turn_rad), math.sin(turn_rad)

@@ -171,6 +171,11 @@ class MapAidedFilter:
         self._cloud = None
         self._plain.reset_place()
 
+    def set_scale_std(self, std: float) -> None:
+        """Set the prior deviation of the scale; a cloud, drawn by the one before, ends."""
+        self._cloud = None
+        self._plain.set_scale_std(std)
+
     def set_drift_std(self, std_radps: float) -> None:
         share = self._plain.set_drift_std(std_radps)
         if self._cloud is not None and share < 1.0:

@@ -20,6 +20,7 @@ from base_station.fusion.odometry.start_correction import StartCorrection
 from base_station.fusion.odometry.thinned_path import ThinnedPath
 from shared.clock import NS_PER_MS
 from shared.messages import Position
+from shared.path_noise import PathNoise
 from shared.quality import GOOD
 
 FIX_NEAR_MS = 1000  # a fix so near to where a path begins or breaks was taken there
@@ -40,6 +41,7 @@ class PathHistory(msgspec.Struct):
     runs: PathRuns = msgspec.field(default_factory=PathRuns)
     fixes: PathFixes = msgspec.field(default_factory=PathFixes)
     start: FrameStart = msgspec.field(default_factory=FrameStart)
+    path_noise: PathNoise | None = None  # as the unit's tracker states it last
     latest: LatestEstimate = msgspec.field(default_factory=LatestEstimate)
     moved: RigidTransform2D = RigidTransform2D()  # the frame, since anything was packed
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
@@ -82,6 +84,7 @@ class PathHistory(msgspec.Struct):
         """
         own, boot_id = self.own, position.header.boot_id
         t_ns = own.apart_ns(t_ns)
+        self.path_noise = position.path_noise
         restarted = False
         if boot_id != self.runs.boot_id:
             restarted = self._begin_run(boot_id, t_ns)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from base_station.fusion.interface import Start
 from base_station.fusion.odometry.points import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.smoothing.interface import UnitEvidence
+from base_station.fusion.stated_noise import with_path_noise
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,7 +28,7 @@ NS_TO_S = 1e-9
 
 @dataclass(frozen=True)
 class WalkNoise:
-    """Noise of own paths."""
+    """Noise of own paths whose trackers state none."""
 
     walk_m_per_sqrt_m: float = 0.03  # each axis
     turn_rad_per_sqrt_m: float = 0.004
@@ -54,10 +55,11 @@ class Chain:
     turn_var: Floats  # (k - 1,)
     moving_s: Floats  # (k - 1,)
     restarts: NDArray[np.bool_]  # (k,) a new own frame begins at this knot
+    scale_std: float  # of each own frame
 
     @staticmethod
     def of(evidence: UnitEvidence, noise: WalkNoise, knot_m: float, knot_s: float) -> Chain:
-        path = evidence.path
+        path, noise = evidence.path, with_path_noise(noise, evidence.path_noise)
         knots = _choose_knots(path, knot_m, knot_s)
         steps = np.diff(path.own_m, axis=0)
         joins = (path.flags[1:] & (BREAK | RESTART)) == 0
@@ -85,6 +87,7 @@ class Chain:
             turn_var=_sums(turn_var, begins),
             moving_s=_sums(path.moving_s[1:], begins),
             restarts=restarts,
+            scale_std=noise.scale_std,
         )
 
     def __len__(self) -> int:

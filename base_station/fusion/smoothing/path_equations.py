@@ -109,7 +109,7 @@ def _add_priors(
         if estimate.aligned[segment.start]:
             along = _unit(estimate.x[segment.start : segment.start + 1, 2:4])[0]
             equations.add(
-                n.scale_std, 1.0,
+                chain.scale_std, 1.0,
                 (np.array([first + 2]), along[0]), (np.array([first + 3]), along[1]),
             )  # fmt: skip
         else:

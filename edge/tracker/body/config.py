@@ -51,6 +51,8 @@ class BodyConfig(NamedTuple):
     place: int = UNKNOWN_PLACE
     scale_std: float = 0.08  # of a person of whom nothing is known
     step_std: float = 0.35  # of a single step, by its length
+    usual_step_m: float = 0.65  # of adults who walk indoors; see path_noise
+    usual_speed_mps: float = 1.2  # of the same
 
     # Walking direction, apart from the sensor's own.
     direction_steps: float = 12.0  # memory

@@ -51,6 +51,7 @@ from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.preprocessing.sample_times import regular_time
 from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 _PLACES = {"waist": TRUNK, "hip": TRUNK, "chest": TRUNK, "hand": HAND, "pocket": POCKET}
 
@@ -75,6 +76,16 @@ class BodyTracker:
         if gain_std is None:
             gain_std = self.config.gain_std
         start_path(self._state[0], iron_std_ut, gain_std, self.config)
+
+    @property
+    def path_noise(self) -> PathNoise:
+        """Process noise as of ``path_filter``, whose random walks go by steps and by time."""
+        config = self.config
+        return PathNoise(
+            scale_std=config.scale_std,
+            place_std_m_per_sqrt_m=config.step_std * math.sqrt(config.usual_step_m),
+            turn_std_rad_per_sqrt_m=config.heading_walk_rad / math.sqrt(config.usual_speed_mps),
+        )
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""

@@ -24,6 +24,7 @@ from edge.tracker.interface import BodyDimensions, TrackBatch
 from edge.tracker.track_rows import empty_rows, join_rows
 from shared.clock import NS_PER_S
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 _KEPT_NS = 20 * NS_PER_S  # of a person who stands still: enough for a tracker to align itself
 _SILENT_NS = 2 * NS_PER_S  # a sensor that is gone is not waited for
@@ -51,6 +52,11 @@ class AutomaticTracker:
     @property
     def choice(self) -> Choice | None:
         return self._choice
+
+    @property
+    def path_noise(self) -> PathNoise | None:
+        """Process noise of the rows; see ``Tracker``."""
+        return self._tracker.path_noise
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         """Take samples of one sensor; return the rows that have become final."""

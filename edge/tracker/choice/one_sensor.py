@@ -6,6 +6,7 @@ from edge.samples import ImuBatch
 from edge.tracker.interface import TrackBatch, Tracker
 from edge.tracker.track_rows import empty_rows
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 
 class OneSensorTracker:
@@ -14,6 +15,11 @@ class OneSensorTracker:
     def __init__(self, tracker: Tracker, sensor: str = "") -> None:
         self._tracker = tracker
         self._sensor = sensor
+
+    @property
+    def path_noise(self) -> PathNoise | None:
+        """Process noise of the rows; see ``Tracker``."""
+        return self._tracker.path_noise
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         return self._tracker.push(batch) if sensor == self._sensor else empty_rows()

@@ -38,12 +38,15 @@ from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.preprocessing.sample_times import regular_time
 from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 KEPT_LAG_SHARE = 0.66  # a release in swing keeps rows younger than this share of the lag
 
 
 class EskfTracker:
     """Error-state filter (error_model.py) for a sensor anywhere on the foot; see ``Tracker``."""
+
+    path_noise: PathNoise | None = None  # a foot's, which is the usual one
 
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description

@@ -27,6 +27,7 @@ from edge.tracker.interface import (
 )
 from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 FEET = (FOOT, LEFT_FOOT, RIGHT_FOOT)
 TWO_FEET = FusionConfig()
@@ -36,6 +37,8 @@ FOOT_AND_TRUNK = FusionConfig(length_std=(0.003, 0.08), share=(0.99, 0.01))
 
 class FusedPathsTracker:
     """Two paths of one person, fused; see ``MultiSensorTracker``."""
+
+    path_noise: PathNoise | None = None  # of the leading foot, which is the usual one
 
     def __init__(
         self,

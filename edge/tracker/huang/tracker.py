@@ -31,6 +31,7 @@ from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.preprocessing.sample_times import regular_time
 from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)
 NO_STANCE = int(Reason.NO_STANCE)
@@ -38,6 +39,8 @@ NO_STANCE = int(Reason.NO_STANCE)
 
 class HuangTracker:
     """The original method beside the default tracker, for comparison; see ``Tracker``."""
+
+    path_noise: PathNoise | None = None  # a foot's, which is the usual one
 
     def __init__(self, description: SensorDescription, config: HuangConfig | None = None) -> None:
         self.description = description

@@ -63,7 +63,13 @@ TORSO_SHANK = np.dtype(
 class TorsoShankConfig(NamedTuple):
     """The thesis leaves the thresholds of its detector open."""
 
-    trunk: TrunkConfig = TrunkConfig(step_std=0.05, turn_step_std=0.3, start_std_m=0.25, hold_s=0.7)
+    trunk: TrunkConfig = TrunkConfig(
+        step_std=0.05,
+        turn_step_std=0.3,
+        start_std_m=0.25,
+        path_std_m_per_sqrt_m=0.11,  # the waist's, with these deviations and learnt_step_std
+        hold_s=0.7,
+    )
     waist: WaistConfig = WaistConfig()
     # Vertical-straight-line instant (4.2.1).
     average_s: float = 0.1  # of the rate's moving average

@@ -40,6 +40,7 @@ from edge.tracker.trunk.follow import follow_sample
 from edge.tracker.trunk.kernel_tracker import is_past, new_states, take_times
 from edge.tracker.trunk.state import begin_trunk
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 SHANK_PLACE = "shank"
 
@@ -71,6 +72,12 @@ class TorsoShankTracker:
         shank = next(name for name in sensors if sensors[name].place == SHANK_PLACE)
         (torso,) = (name for name in sensors if name != shank)
         self._torso_ring, self._shank_ring = self._inputs[torso].ring, self._inputs[shank].ring
+
+    @property
+    def path_noise(self) -> PathNoise:
+        """Process noise of the rows; see ``Tracker``. The heading does no random walk."""
+        leg_std = float(self._torso["leg_std"][0])
+        return PathNoise(leg_std, self.config.trunk.path_std_m_per_sqrt_m)
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         """Take samples of one sensor; return the rows that have become final."""

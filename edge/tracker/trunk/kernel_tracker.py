@@ -17,6 +17,7 @@ from edge.tracker.preprocessing.sample_times import regular_time
 from edge.tracker.track_rows import join_rows, rows_of
 from edge.tracker.trunk.state import TrunkConfig, TrunkState, begin_trunk
 from shared.earth_field import EarthField
+from shared.path_noise import PathNoise
 
 Kernel = Callable[[Ring, NDArray[Any], Any, bool], int]  # returns one past the last row released
 
@@ -42,6 +43,12 @@ class KernelTracker:
         self._trunk = states["trunk"]
         self._kernel = kernel
         begin_trunk(self._trunk[0], description)
+
+    @property
+    def path_noise(self) -> PathNoise:
+        """Process noise of the rows; see ``Tracker``. The heading does no random walk."""
+        trunk: TrunkConfig = self.config.trunk
+        return PathNoise(trunk.length_std, trunk.path_std_m_per_sqrt_m)
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""

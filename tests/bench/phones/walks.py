@@ -69,6 +69,7 @@ def publish_walk(trial: Path, tracker: str) -> PublishedPhone:
     worn = make_tracker(tracker, replace(source.description, place="hand"))
     rows = join_rows([worn.push(source.imu), worn.finish()])
     publisher = PositionPublisher(Stamper("", 1, SystemClock()), RATE_HZ)
+    publisher.set_path_noise(worn.path_noise)
     positions = publisher.push(rows, Timeline(mono_origin_ns=ORIGIN_NS))
     truth = read_truth(trial)
     assert truth is not None, trial
@@ -124,7 +125,11 @@ def fuse_walk(walk: PublishedPhone, floor: Path | None) -> Mapping[str, Waypoint
         history.set_live_estimate(estimate, None)
         live[row] = _row(estimate)
     evidence = UnitEvidence(
-        history.arrays(), history.start.position, history.start.begin_ns, grid=grid
+        history.arrays(),
+        history.start.position,
+        history.start.begin_ns,
+        grid=grid,
+        path_noise=history.path_noise,
     )
     path = SMOOTHERS[0].smooth({"": evidence}).paths[""]
     product_m2 = path.correlation_ne * path.std_north_m * path.std_east_m

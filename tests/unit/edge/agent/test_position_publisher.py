@@ -15,6 +15,7 @@ from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position
+from shared.path_noise import PathNoise
 
 RATE_HZ = 20
 LIVE = Timeline()
@@ -245,3 +246,20 @@ def test_clock_that_went_back_leaves_no_pressure_of_the_future() -> None:
     assert position.pressure_pa == 1000.0
     (position,) = out.push(rows(standing(1), from_s=3.1), LIVE)
     assert position.pressure_pa == 1000.0
+
+
+def test_positions_carry_the_noise_that_the_tracker_states() -> None:
+    publisher, noise = stream(), PathNoise(0.08, 0.28, 0.014)
+    (first, *_) = publisher.push(rows(standing()), LIVE)
+    publisher.set_path_noise(noise)
+    (later, *_) = publisher.push(rows(standing(), from_s=2.0), LIVE)
+    assert first.path_noise is None
+    assert not first.to_wire().path_scale_std_permille
+    assert later.path_noise == Position.from_wire(later.to_wire()).path_noise == noise
+
+
+def test_part_of_the_noise_may_be_unknown() -> None:
+    publisher, noise = stream(), PathNoise(scale_std=0.18, place_std_m_per_sqrt_m=0.21)
+    publisher.set_path_noise(noise)
+    (one, *_) = publisher.push(rows(standing()), LIVE)
+    assert Position.from_wire(one.to_wire()).path_noise == noise

@@ -58,6 +58,8 @@ class Scripted:
             magnetic_north_std_rad=np.full(n, np.inf),
         )
 
+    path_noise = None
+
     def set_earth_field(self, field, t_ns):
         raise AssertionError("not used here")
 
