@@ -67,7 +67,7 @@ def add_position_constraints(
         if place.heading_rad is not None:
             own_rad = chain.path.heading_rad[chain.knots[row]]
             _add_turn(equations, base + STATES * row, place.heading_rad - own_rad,
-                      place.heading_std_rad)  # fmt: skip
+                      place.heading_std_rad, chain.scale_std)  # fmt: skip
 
 
 def add_places(
@@ -116,12 +116,32 @@ def _add_priors(
             _add_turn(equations, first, 0.0, np.sqrt(0.5))
         has_heading = start is not None and start.heading_std_rad < np.pi
         if start is not None and has_heading and segment.start == chain.start_knot:
-            _add_turn(equations, first, start.heading_rad, start.heading_std_rad)
+            turn = start.heading_rad, start.heading_std_rad, chain.scale_std
+            _add_turn(equations, first, *turn, is_scaled=bool(estimate.aligned[segment.start]))
     equations.add(n.drift_radps, 0.0, (np.array([base + 4]), 1.0))
 
 
-def _add_turn(equations: Equations, column: int, turn_rad: float, std_rad: float) -> None:
+def _add_turn(
+    equations: Equations,
+    column: int,
+    turn_rad: float,
+    std_rad: float,
+    scale_std: float = 0.0,
+    *,
+    is_scaled: bool = False,
+) -> None:
+    """Add a known turn. A heading that is known better than the scale does not show the scale:
+    that is left to ``scale_std``, or to an equation that is there already (``is_scaled``).
+    """
     std = max(std_rad, 0.02)
+    if std < scale_std:
+        cosine, sine = np.cos(turn_rad), np.sin(turn_rad)
+        equations.add(std, 0.0, (np.array([column + 2]), -sine), (np.array([column + 3]), cosine))
+        if not is_scaled:
+            equations.add(
+                scale_std, 1.0, (np.array([column + 2]), cosine), (np.array([column + 3]), sine)
+            )
+        return
     equations.add(std, np.cos(turn_rad), (np.array([column + 2]), 1.0))
     equations.add(std, np.sin(turn_rad), (np.array([column + 3]), 1.0))
 
