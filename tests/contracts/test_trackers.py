@@ -154,6 +154,9 @@ def test_noise_of_its_path_is_stated_where_it_is_not_a_foot_s(name, five_strides
     if FOOT in find_tracker(name).worn_on:
         assert noise is None
         return
+    assert noise is not None
+    assert noise.scale_std is not None
+    assert noise.place_std_m_per_sqrt_m is not None
     assert 0.03 < noise.scale_std < 0.3
     assert 0.1 < noise.place_std_m_per_sqrt_m < 0.5
 
