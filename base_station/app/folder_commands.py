@@ -15,13 +15,19 @@ from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.core.log_position import LogPosition
 from base_station.engine.log_feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
-from base_station.privacy.erasure_queue import erase_now
-from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService
+from base_station.privacy.erasure_queue import erase_now, request_again
+from base_station.privacy.erasure_service import (
+    BY_OTHER_STATION,
+    ClosedLog,
+    ErasureResult,
+    ErasureService,
+)
 from base_station.privacy.requests import hand_over
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.assessment.wearers import wearers
 from base_station.replay.post_processing import PostProcessor, Tracks
 from base_station.replay.trail_kind import TrailKind
+from base_station.standby.cut_erasures import orders_behind
 from base_station.standby.log_truncation import set_aside
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -104,6 +110,9 @@ def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]
     folder = DataFolder(data)
     lock = folder.lock()
     try:
+        for by, order in orders_behind(folder.log, place):
+            if by == BY_OTHER_STATION:  # a request of the other's that is done: nobody repeats it
+                request_again(folder.forgettings, order.kind, order.subject_id)
         # It must not have events of the cut part, however this ends.
         with open_database(folder.database) as store:
             Records(store, SystemClock()).forget_projections()

@@ -47,6 +47,7 @@ from base_station.radio.recorders import RadioRecorders
 from base_station.replay.post_processing_worker import PostProcessingWorker
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.site.plan_reader import PlanReader
+from base_station.standby.erasure_handover import WaitingErasure
 from base_station.standby.mode import HaMode, Paired, Parts, Standalone
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -255,6 +256,7 @@ class _Station:
             ),
             start_again=self._restarts.request,
             step_again=self._restarts.note_repaired,
+            erasures=self._waiting_erasures,
             forget=self._erase_for_peer,
         )
         standby = resources.config.standby
@@ -354,6 +356,13 @@ class _Station:
 
     def _request_checkpoint(self) -> None:
         self._engine.save_soon()
+
+    def _waiting_erasures(self) -> list[WaitingErasure]:
+        """Erasures that another station has to order: this one does not lead."""
+        return [
+            WaitingErasure(one.forgetting_id, one.kind, one.subject_id)
+            for one in self._erasures.own_waiting()
+        ]
 
     def _erase_for_peer(self, what: str) -> None:
         """Forget a person or incident that the other station has forgotten: this log has it too."""

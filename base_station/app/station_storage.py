@@ -147,7 +147,7 @@ class StationStorage:
 
         def obstacle(job: ErasureJob) -> str:
             if not job.from_peer and not leads():
-                return "this station is the standby; ask the one that leads"
+                return "this station does not lead; the one that leads erases it first"
             if self.projection.is_behind:  # records read from the log may be of the person
                 return "the database is brought up to date from the log; it is done after that"
             # One may have opened since the request; a follower's leader has checked its own.

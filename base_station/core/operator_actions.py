@@ -45,6 +45,7 @@ from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
+    BeginErasure,
     CloseIncident,
     ConfirmCommand,
     DoneApart,
@@ -113,8 +114,8 @@ class ActionHandler:
                 changes = self._command(state, by, action)
             case UndoConfirmation():
                 changes = self._undo(state, action)
-            case ForgetWearers():
-                changes = self._forget(state, action)
+            case ForgetWearers() | BeginErasure():
+                changes = self._erase(state, action)
             case _:
                 assert_never(action)
         return changes
@@ -267,10 +268,14 @@ class ActionHandler:
                 yield TrailBackfilled(unit.unit_id)
                 yield _pins_changed(partners)
 
-    def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
-        unit = state.registered_unit(action.unit_id)
+    def _erase(
+        self, state: StationState, action: ForgetWearers | BeginErasure
+    ) -> list[StateChange]:
         if state.open_incidents:
             raise UserError(coded("incident-open-meanwhile", "an incident is open; close it first"))
+        if isinstance(action, BeginErasure):
+            return []  # the erasure service rewrites the log before it
+        unit = state.registered_unit(action.unit_id)
         self._positioning.forget(state, unit)
         pinned = pin_registry.forget(state, unit.unit_id)
         self._alarms.erase_names(state, unit)

@@ -17,6 +17,8 @@ from pathlib import Path
 import msgspec
 
 from base_station.privacy.erasure_service import (
+    BY_OTHER_STATION,
+    PERSON,
     ErasureProgress,
     ErasureResult,
     ErasureService,
@@ -96,40 +98,32 @@ class ErasureQueue:
         self._jobs.close()
 
     def add(self, by: str, kind: str, subject_id: str, *, from_peer: bool = False) -> ErasureJob:
-        """It is on the disk when this returns, and will be done.  The same twice is once.
+        """It is on the disk when this returns, and will be done.  The same twice is once; one of
+        ``from_peer`` that waits here is ordered by the other station now.
 
         Raises StoreError where the disk does not take it.
         """
-        return self._jobs.add(_wish(by, kind, subject_id, from_peer=from_peer))
+        added = self._jobs.add(_wish(by, kind, subject_id, from_peer=from_peer))
+        if from_peer and not added.from_peer:
+            self._jobs.note_each(
+                lambda one: one.forgetting_id == added.forgetting_id, from_peer=True
+            )
+            self._jobs.wake()
+        return added
 
     def all(self) -> tuple[ErasureJob, ...]:
         """The last that are over, and those under way."""
         return self._jobs.all()
 
+    def own_waiting(self) -> tuple[ErasureJob, ...]:
+        """Those that were requested here and are not done: a station that follows hands them to the
+        one that leads.
+        """
+        return tuple(one for one in self.all() if not (one.state.is_over or one.from_peer))
+
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console, while something is under way."""
-        return tuple(
-            coded(
-                "erasure-under-way",
-                "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
-                "wished",
-                kind=Term(one.kind, one.kind),
-                share_fraction=one.share,
-                by=one.by,
-            )
-            if not one.problem
-            else coded(
-                "erasure-waits",
-                "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
-                "wished: {reason}",
-                kind=Term(one.kind, one.kind),
-                share_fraction=one.share,
-                by=one.by,
-                reason=one.problem,
-            )
-            for one in self.all()
-            if not one.state.is_over
-        )
+        return tuple(_problem_of(one) for one in self.all() if not one.state.is_over)
 
     def _work_on_first(self, jobs: list[ErasureJob]) -> float:
         """Work on the first job that need not wait; return the pause after it."""
@@ -191,7 +185,7 @@ def erase_now(
     """
     jobs = JobList(kept, ErasureJob)
     began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
-    if kind == "person" and not began:  # only ids are kept: another text may be a name
+    if kind == PERSON and not began:  # only ids are kept: another text may be a name
         forgetter.require_person(subject_id)
     added = jobs.add(_wish(by, kind, subject_id, from_peer=False))
     (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
@@ -209,8 +203,39 @@ def erase_now(
         ) from ended
     finally:
         jobs.note(job, save=True, **_so_far(tally))
-    jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
+    if forgetter.is_of_pair():  # done again by a station that can order it of the other one
+        jobs.note(job, save=True, state=ErasureState.WAITING, problem="", share=0.0)
+    else:
+        jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
     return done
+
+
+def request_again(kept: Path, kind: str, subject_id: str) -> None:
+    """Request an erasure whose order is in no log any more, in the file of a station's queue."""
+    jobs = JobList(kept, ErasureJob)
+    jobs.add(_wish(BY_OTHER_STATION, kind, subject_id, from_peer=False))
+
+
+def _problem_of(job: ErasureJob) -> str:
+    kind = Term(job.kind, job.kind)
+    if not job.problem:
+        return coded(
+            "erasure-under-way",
+            "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
+            "wished",
+            kind=kind,
+            share_fraction=job.share,
+            by=job.by,
+        )
+    return coded(
+        "erasure-waits",
+        "The log is being written anew to forget a {kind} ({share_fraction:.0%}), as {by} "
+        "wished: {reason}",
+        kind=kind,
+        share_fraction=job.share,
+        by=job.by,
+        reason=job.problem,
+    )
 
 
 def _wish(
@@ -228,8 +253,8 @@ def _wish(
 def _forget(
     forgetter: ErasureService, job: ErasureJob, on_progress: Progress, tally: ErasureProgress
 ) -> ErasureResult:
-    forget = forgetter.person if job.kind == "person" else forgetter.incident
-    return forget(job.by, job.subject_id, on_progress, tally)
+    forget = forgetter.person if job.kind == PERSON else forgetter.incident
+    return forget(job.by, job.subject_id, on_progress, tally, from_peer=job.from_peer)
 
 
 def _tally_of(job: ErasureJob) -> ErasureProgress:

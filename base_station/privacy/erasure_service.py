@@ -10,10 +10,11 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from threading import Lock
 from typing import Protocol
@@ -24,12 +25,17 @@ from base_station.core.erasure.erasure import (
     Record,
     actions_of,
     erasure_of_person,
-    first_erased_ns,
+)
+from base_station.core.erasure.erasure_order import (
+    ErasureOrder,
+    OrderedPart,
+    actions_before,
+    last_order,
+    orders_of,
 )
 from base_station.core.erasure.incident_scan import erasure_of_incident
 from base_station.core.erasure.names_in_older_logs import has_names
 from base_station.core.erasure.redaction import Redactor
-from base_station.core.events import Received, event_of
 from base_station.engine.ports import ActionResult
 from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
@@ -58,7 +64,14 @@ from shared.mcap_log import (
     segment_paths,
 )
 from shared.messages import STATION_ID
-from shared.messages.station import Action, ForgetWearers, OpenIncident, RegisterUnit
+from shared.messages.station import (
+    Action,
+    BeginErasure,
+    ForgetWearers,
+    OpenIncident,
+    RegisterUnit,
+    TakeOver,
+)
 
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # requests here the erasures done there
@@ -66,13 +79,14 @@ RADIO_KEPT = (
     "What was recorded of the radio while another incident was open stays until that is forgotten, "
     "too: nobody can tell who of them speaks"
 )
+PERSON = "person"
 _ACTIONS = OPERATOR.key(STATION_ID)
 _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
 Progress = Callable[[float], None]  # receives the fraction done
 RepairFirst = Callable[[Path, str], bool]  # receives the damage in a segment of the log
 EraseAudio = Callable[[int, int], int]  # station times, the second left out; gives packets
-Act = Callable[[str, Action], Future[ActionResult] | None]  # None: no station that leads does it
+Act = Callable[[str, Action], Future[ActionResult] | None]  # None: this station does not lead
 
 
 class LogFiles(Protocol):
@@ -163,13 +177,14 @@ class ErasureService:
         records: Records,
         clock: Clock,
         pulls: RecordingTransfers,
-        act: Act = lambda _by, _action: None,
+        act: Act | None = None,
         mended_first: RepairFirst = lambda _path, _damage: False,
         forget_name: Callable[[str], None] = lambda _person_id: None,
         erase_audio: EraseAudio = lambda _from_ns, _until_ns: 0,
     ) -> None:
-        """``act`` has the running station forget what it holds in memory.  ``mended_first`` tells
-        whether what is lost of a segment is about to be fetched from the other station.
+        """``act`` has the running station forget what it holds in memory, and order the erasure;
+        None: no station runs on the folder.  ``mended_first`` tells whether what is lost of a
+        segment is about to be fetched from the other station.
         ``forget_name`` has it show a person's name no more.  ``erase_audio`` is called for a whole
         incident alone: in what is spoken nobody can tell who speaks.
         """
@@ -193,19 +208,23 @@ class ErasureService:
         person_id: str,
         on_progress: Progress = lambda _: None,
         tally: ErasureProgress | None = None,
+        *,
+        from_peer: bool = False,
     ) -> ErasureResult:
-        """UserError where nobody has ever heard of that person; tried again, everything may be
-        gone but for the entry in the audit.
+        """``from_peer``: the other station has erased it.  UserError where nobody has ever heard of
+        that person; tried again, everything may be gone but for the entry in the audit.
         """
         tally = tally or ErasureProgress()
-        erasure, is_known = self._erasure_of(person_id)
+        found, is_known = self._erasure_of_person(person_id, None)
         if not (tally.again or is_known):
             raise _unknown(person_id)
-        return self._forget(by, erasure, f"person {person_id}", on_progress, tally)
+        order = self._ordered(by, PERSON, person_id, found, from_peer=from_peer)
+        erasure, _ = self._erasure_of_person(person_id, order)
+        return self._forget(by, erasure, order, f"{PERSON} {person_id}", on_progress, tally)
 
     def require_person(self, person_id: str) -> None:
         """UserError where nobody has ever heard of that person."""
-        if not self._erasure_of(person_id)[1]:
+        if not self._erasure_of_person(person_id, None)[1]:
             raise _unknown(person_id)
 
     def incident(
@@ -214,39 +233,82 @@ class ErasureService:
         incident_id: str,
         on_progress: Progress = lambda _: None,
         tally: ErasureProgress | None = None,
+        *,
+        from_peer: bool = False,
     ) -> ErasureResult:
-        """UserError where there is no such incident, or it is open."""
-        erasure = self._begun.of(incident_id)
-        if erasure is None:
-            actions = self._actions()
-            erasure = erasure_of_incident(
-                actions,
-                incident_id,
-                self._first_message_ns(actions),
-                is_whole=self._is_whole(),
-            )
+        """``from_peer``: as of a person.  UserError where there is no such incident, or it is
+        open.
+        """
+        begun = self._begun.of(incident_id)
+        found = begun or self._erasure_of_incident(incident_id, None)
+        order = self._ordered(by, INCIDENT, incident_id, found, from_peer=from_peer)
+        erasure = begun or self._erasure_of_incident(incident_id, order)
+        if begun is None:
             self._begun.keep(erasure)
-        return self._forget(
-            by, erasure, f"{INCIDENT} {incident_id}", on_progress, tally or ErasureProgress()
-        )
+        tally = tally or ErasureProgress()
+        return self._forget(by, erasure, order, f"{INCIDENT} {incident_id}", on_progress, tally)
 
-    def _erasure_of(self, person_id: str) -> tuple[Erasure, bool]:
+    def is_of_pair(self) -> bool:
+        """True where the log is shared with another station, or was."""
+        return any(isinstance(one.action, TakeOver) for _, one in actions_of(self._actions()))
+
+    def _erasure_of_person(
+        self, person_id: str, order: ErasureOrder | None
+    ) -> tuple[Erasure, bool]:
         """And whether anything knows the person.  Names matter where a log has any."""
         with self._store.read() as session:
             names = known_names(session, person_id)
-        actions = self._actions()
+        actions = actions_before(self._actions(), order)
         set_aside = (record for path in self._set_aside() for record in _actions_in(path))
         has_older = has_names(one for _, one in actions_of((*actions, *set_aside)))
-        now_ns = self._clock.utc_ns()
-        found = erasure_of_person(actions, person_id, names if has_older else (), now_ns)
+        until_ns = self._clock.utc_ns() if order is None else order.t_ns
+        found = erasure_of_person(actions, person_id, names if has_older else (), until_ns)
         return found, bool(found.wearings or names)
 
+    def _erasure_of_incident(self, incident_id: str, order: ErasureOrder | None) -> Erasure:
+        actions = actions_before(self._actions(), order)
+        return erasure_of_incident(
+            actions, incident_id, self._first_message_ns(actions), is_whole=self._is_whole()
+        )
+
+    def _ordered(
+        self, by: str, kind: str, subject_id: str, found: Erasure, *, from_peer: bool
+    ) -> ErasureOrder | None:
+        """Erase the memory of a station that leads, and order the erasure in the log; at one that
+        follows, the order of the other.  None: there is none, and the whole log is rewritten.
+
+        Raises StoreError where this station may not do it now.
+        """
+        if self._act is None:
+            return None
+        self._forget_in_memory(by, found)
+        acted = self._act(by, BeginErasure(kind, subject_id))
+        if acted is None:
+            if not from_peer:
+                raise StoreError("this station does not lead; the one that leads orders it")
+            self._log.complete_segments()  # on the disk, to be read
+            return last_order(self._actions(), kind, subject_id)
+        done = _result(acted)
+        if done.refused is not None:
+            raise StoreError(done.refused.reason)
+        self._log.complete_segments()
+        orders = (order for order, _ in orders_of(self._actions()))
+        order = next((one for one in orders if one.action_id == done.action_id), None)
+        if order is None:
+            raise StoreError("the order to erase cannot be read in the log")
+        return order
+
     def _forget(
-        self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: ErasureProgress
+        self,
+        by: str,
+        erasure: Erasure,
+        order: ErasureOrder | None,
+        what: str,
+        on_progress: Progress,
+        tally: ErasureProgress,
     ) -> ErasureResult:
-        self._forget_in_memory(by, erasure)
         self._checkpoints.clear()
-        self._rewrite_log(erasure, on_progress, tally)
+        self._rewrite_log(erasure, order, on_progress, tally)
         if erasure.incident_id:
             self._erase_radio(erasure, tally)
         with self._store.write() as session:
@@ -277,25 +339,32 @@ class ErasureService:
         """Done when this returns: what the station saved before that would bring them back."""
         if erasure.person_id:
             self._forget_name(erasure.person_id)
+        if self._act is None:
+            return
         acted = [self._act(by, ForgetWearers(unit_id)) for unit_id in sorted(erasure.unit_ids)]
-        try:
-            for one in acted:
-                if one is not None:
-                    one.result(_ACTED_WITHIN_S)
-        except TimeoutError as error:
-            raise StoreError("the station did not get to what it holds in memory") from error
+        for one in acted:
+            if one is not None:
+                _result(one)
 
-    def _rewrite_log(self, erasure: Erasure, on_progress: Progress, tally: ErasureProgress) -> None:
+    def _rewrite_log(
+        self,
+        erasure: Erasure,
+        order: ErasureOrder | None,
+        on_progress: Progress,
+        tally: ErasureProgress,
+    ) -> None:
         segments = [*self._log.complete_segments(), *self._set_aside()]
-        clocks = self._clocks(erasure)
+        clocks, ordered, whole = CaptureClocks(), OrderedPart(order), OrderedPart(None)
         self._remove_recordings(erasure, tally)
         tally.files += sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
             redactor = Redactor(erasure, clocks, erasure.inserted_in(_actions_in(path)))
+            shared = ordered if path.parent == self._log.folder else whole
+            replace = partial(shared.redacted, redactor=redactor)
             damage: list[str] = []
             with self._log.rewriting:
-                changed = rewrite_segment(path, redactor, on_damage=self._noting(path, damage))
+                changed = rewrite_segment(path, replace, on_damage=self._noting(path, damage))
             for part in damage:
                 tally.note_damage(part, written_anew=changed > 0)
             tally.records += changed
@@ -347,7 +416,7 @@ class ErasureService:
             _remove(folder)
             tally.files += files
 
-    def _actions(self) -> Collection[Record]:
+    def _actions(self) -> Sequence[Record]:
         return list(read_log(self._log.folder, keys={_ACTIONS}))
 
     def _is_whole(self) -> bool:
@@ -379,18 +448,6 @@ class ErasureService:
                 received_ns.setdefault(units[key], t_ns)
         return received_ns
 
-    def _clocks(self, erasure: Erasure) -> CaptureClocks:
-        """From all that came live.  What was erased has left a heartbeat with the same header, so a
-        station that forgets again, or later than the other one, places every message as before.
-        """
-        keys = {key for unit_id in erasure.unit_ids for key in _keys_of(unit_id)}
-        clocks = CaptureClocks(first_erased_ns(self._actions(), erasure))
-        for record in read_log(self._log.folder, keys=keys):
-            event = event_of(*record)
-            if isinstance(event, Received):
-                clocks.note(event.t_ns, event.message.header)
-        return clocks
-
 
 def _unknown(person_id: str) -> UserError:
     return UserError(f"neither the roster nor the log knows a person {person_id}")
@@ -400,6 +457,13 @@ def _keys_of(unit_id: str) -> list[str]:
     """Under which the log has what a unit, or the agent that tracks for it, said live."""
     upwards = [one for one in CHANNELS if one.logged and one.direction is Direction.UP]
     return [channel.key(one) for channel in upwards for one in (unit_id, tracker_id(unit_id))]
+
+
+def _result(acted: Future[ActionResult]) -> ActionResult:
+    try:
+        return acted.result(_ACTED_WITHIN_S)
+    except TimeoutError as error:
+        raise StoreError("the station did not get to what it holds in memory") from error
 
 
 def _actions_in(path: Path) -> Iterator[Record]:

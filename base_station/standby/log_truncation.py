@@ -14,6 +14,7 @@ from itertools import dropwhile
 from pathlib import Path
 
 from base_station.core.log_position import START, LogPosition, Record, events_after, is_event
+from base_station.standby.cut_erasures import kept_until
 from base_station.storage.data_folder import DataFolder
 from shared.durable_names import sync_folder
 from shared.errors import LogError
@@ -25,16 +26,18 @@ MERGED_SUFFIX = ".told"  # of a part's name
 
 
 def set_aside(folder: DataFolder, place: LogPosition) -> None:
-    """Leave in the log what stands up to ``place``.  No station may be running on the folder.
+    """Leave in the log what stands up to ``place``, or less where an erasure behind it has changed
+    more (``cut_erasures``).  No station may be running on the folder.
 
     Interrupted, it leaves a log that ends earlier, which the standby fetches again.
     """
     scratch = folder.path / "log.part"
     shutil.rmtree(scratch, ignore_errors=True)
     try:
+        until = kept_until(folder.log, place)
         apart = _new_part(folder.path, place)
-        moved = list(_segments_at_or_behind(folder.log, place))
-        kept = _kept(moved, place)
+        moved = list(_segments_at_or_behind(folder.log, until))
+        kept = _kept(moved, until)
         make_folder(scratch)
         cut = scratch / moved[0].name if moved else None
         has_cut = cut is not None and write_segment_like(moved[0], cut, kept)
@@ -46,7 +49,7 @@ def set_aside(folder: DataFolder, place: LogPosition) -> None:
     except OSError as error:
         raise LogError(f"the log cannot be cut ({error}): free or mend the disk") from error
     for path in folder.checkpoints.glob("*.checkpoint"):
-        if int(path.stem) >= place.t_ns:
+        if int(path.stem) >= until.t_ns:
             path.unlink()
 
 

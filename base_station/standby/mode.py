@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,11 @@ from base_station.engine.ports import EngineGate, Feed, Log
 from base_station.engine.station_clock import SteadyClock
 from base_station.security.pki.folder import PkiFolder
 from base_station.standby.branch_merge import BranchMerge, PartServer
+from base_station.standby.erasure_handover import (
+    ErasureHandover,
+    ErasureServer,
+    WaitingErasure,
+)
 from base_station.standby.ha_controller import HaController, HaDependencies
 from base_station.standby.log_repair import EventServer, LogRepair, SharedLogFiles
 from base_station.standby.shared_log import SharedLog
@@ -52,6 +57,7 @@ class Parts:
     on_lead: Callable[[], None]
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing
+    erasures: Callable[[], Iterable[WaitingErasure]]  # that wait for a station that leads
     forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
 
 
@@ -187,6 +193,7 @@ class Paired:
             TableServer(name, parts.bus, parts.tables, parts.pki),
             PartServer(name, parts.bus, parts.data),
             EventServer(name, parts.bus, parts.disk),
+            ErasureServer(name, parts.bus, lambda: () if pair.leads else parts.erasures()),
         ):
             closing.callback(server.close)
         copying = TableReplication(
@@ -197,6 +204,7 @@ class Paired:
             other=pair.reachable_peer,
             others_run=pair.others_run,
             caught_up=lambda: pair.leads or pair.in_step,
+            has_until=lambda t_ns: pair.leads or self.log.place.t_ns >= t_ns,
             on_people=parts.on_people,
             on_forgotten=parts.forget,
             on_dropped=lambda details: parts.records.audit(STATION_ID, "AccountsCopied", details),
@@ -212,10 +220,16 @@ class Paired:
         mending = LogRepair(
             parts.bus, parts.files, parts.check, pair.reachable_peer, parts.step_again
         )
+        handover = ErasureHandover(
+            parts.bus, lambda: pair.reachable_peer() if pair.leads else None, parts.forget
+        )
         threads = (
             pair,
             Worker.periodic(
                 "replication", 1.0, copying.look, "the other station's accounts are not copied"
+            ),
+            Worker.periodic(
+                "erasures", 2.0, handover.look, "erasures that wait at the other are not ordered"
             ),
             Worker.periodic(
                 "mending", 5.0, mending.look, "the log is not mended from the other station"

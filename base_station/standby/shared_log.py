@@ -13,7 +13,7 @@ from shared.clock import Clock
 from shared.codec import decode
 from shared.errors import WireError
 from shared.messages import STATION_ID, OperatorAction
-from shared.messages.station import ForgetWearers, TakeOver
+from shared.messages.station import BeginErasure, ForgetWearers, TakeOver
 
 _RECENT_BYTES = 16 * 1024 * 1024
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
@@ -176,7 +176,9 @@ class SharedLog:
         match message:
             case OperatorAction(action=TakeOver() as take_over):
                 self._take_overs.append(take_over)
-            case OperatorAction(action=ForgetWearers()):  # the log will be written anew
+            case OperatorAction(
+                action=ForgetWearers() | BeginErasure()
+            ):  # the log will be written anew
                 self._first = self._place()
                 self._places.clear()
                 self._recent.clear()

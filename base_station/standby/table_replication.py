@@ -85,6 +85,7 @@ class TableReplication:
         other: Callable[[], str | None],
         others_run: Callable[[], int],
         caught_up: Callable[[], bool],
+        has_until: Callable[[int], bool],
         on_people: Callable[[], None],
         on_forgotten: Callable[[str], None],
         on_dropped: Callable[[str], None],
@@ -92,8 +93,9 @@ class TableReplication:
     ) -> None:
         """``leader``: station to copy from, where that is another; ``other``: station whose audit
         to add, when this log has ``caught_up``: data that it orders to forget must be there.
-        ``others_run``: run of its program; another one where it started again, perhaps on another
-        machine.
+        ``has_until``: whether this log has what the other's had at a time: then it has the record
+        that orders an erasure.  ``others_run``: run of its program; another one where it started
+        again, perhaps on another machine.
 
         ``on_people`` is called when people or photos may have changed, ``on_forgotten`` with a
         person or an incident ("person ID") that the other station has forgotten, and again if that
@@ -107,6 +109,7 @@ class TableReplication:
         self._other = other
         self._others_run = others_run
         self._caught_up = caught_up
+        self._has_until = has_until
         self._on_people = on_people
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
@@ -190,6 +193,10 @@ class TableReplication:
         if not entries:
             return
         new = self._tables.unknown_audit(entries)
+        early = next((one for one in new if not self._can_take(one)), None)
+        if early is not None:  # it is asked for again
+            new = new[: new.index(early)]
+            entries = entries[: entries.index(early)]
         for entry in new:
             # What this one wished itself comes back where the other leads, from where this one may
             # have copied until then what it had forgotten; one that leads copies nothing.
@@ -198,7 +205,11 @@ class TableReplication:
                 # Before the entry is here, which is how it is known the next time.
                 self._on_forgotten(str(entry["detail"]).partition(":")[0])
         self._tables.add_audit(new)
-        self._audit_number = int(entries[-1]["number"])
+        if entries:
+            self._audit_number = int(entries[-1]["number"])
+
+    def _can_take(self, entry: Row) -> bool:
+        return entry["action"] not in _FORGOTTEN or self._has_until(int(entry["t_ns"]))
 
     def _take_enrolled(self, other: str) -> None:
         registry_bytes = self._ask(other, "enrolled", self._enrolled_digest)

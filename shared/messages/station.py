@@ -226,6 +226,13 @@ class ForgetWearers(msgspec.Struct, frozen=True):
     unit_id: str
 
 
+class BeginErasure(msgspec.Struct, frozen=True):
+    """Every station that has this log erases a subject from the records before this one."""
+
+    kind: str  # "person" or "incident"
+    subject_id: str
+
+
 class TakeOver(msgspec.Struct, frozen=True):
     """From here on this station orders what happens; two stations' logs are compared by these."""
 
@@ -320,6 +327,7 @@ Action = (
     | SetFuser
     | SetRest
     | ForgetWearers
+    | BeginErasure
     | TakeOver
     | DoneApart
     | NoteDispatch
@@ -357,6 +365,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     SetFuser: "set_fuser",
     SetRest: "set_rest",
     ForgetWearers: "forget_wearers",
+    BeginErasure: "begin_erasure",
     TakeOver: "take_over",
     DoneApart: "done_apart",
     NoteDispatch: "note_dispatch",

@@ -6,18 +6,15 @@ Found in the log alone, which knows it even where the database was lost.  Pure.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
-from types import MappingProxyType
+from collections.abc import Collection, Iterable
 
 import msgspec
 
 from base_station.core.events import Received, event_of
-from shared.channels import tracked_unit
 from shared.messages import Header, OperatorAction
 from shared.messages.station import (
     Assign,
     DoneApart,
-    ForgetWearers,
     OpenIncident,
     Unassign,
 )
@@ -110,6 +107,12 @@ class Erasure(msgspec.Struct, frozen=True):
         return any(
             one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
         )
+
+    def may_cover(self, unit_id: str, t_ns: int) -> bool:
+        """True where a message of this unit, logged at that time and of an unknown earlier one, may
+        have to be erased.
+        """
+        return any(one.unit_id == unit_id and one.from_ns <= t_ns for one in self.wearings)
 
     def is_shown(self, t_ns: int) -> bool:
         """True where a console may have shown where somebody was: with the trail that stays until
@@ -253,51 +256,35 @@ def erasure_of_person(
     )
 
 
-def first_erased_ns(records: Iterable[Record], erasure: Erasure) -> dict[str, int]:
-    """By unit, when a station that leads first forgot in memory who had worn it: that is in the
-    logs of both stations.  ``records`` as above.
-    """
-    returned_units = {
-        unit_id: max(one.until_ns for one in erasure.wearings if one.unit_id == unit_id)
-        for unit_id in erasure.unit_ids
-    }
-    settled: dict[str, int] = {}
-    for t_ns, action in actions_of(records):
-        match action.action:
-            case ForgetWearers(unit_id=unit_id) if t_ns >= returned_units.get(unit_id, FOREVER_NS):
-                settled.setdefault(unit_id, t_ns)
-    return settled
-
-
 class CaptureClocks:
-    """Capture times of messages by the station's clock.  The least delayed one bounds it; of a run
-    of which nothing came live the unit itself, if it knew the station's time.
+    """Capture times of messages by the station's clock.  The least delayed message that came live
+    bounds the clock of a run; of a run of which nothing came live the unit itself, if it knew the
+    station's time.
+
+    A record is placed by what stands before it in the log, and by nothing behind it.  So two
+    stations place it in the same way wherever each of them ends, though one has records behind it
+    that the other never gets.
     """
 
-    def __init__(self, first_erased_ns: Mapping[str, int] = MappingProxyType({})) -> None:
-        """``first_erased_ns``: by unit, from when on no message tells more of a run that was heard
-        before; so the other station, which forgets later, places every message as this one did.
-        """
+    def __init__(self) -> None:
         self._offsets_ns: dict[tuple[str, int], int] = {}
-        self._settled_ns = first_erased_ns
-        self._settled: set[tuple[str, int]] = set()
 
     def note(self, t_ns: int, header: Header) -> None:
+        """Note a message that came live, in the order of the log.  What was erased has left a
+        heartbeat with the same header, so an erasure that is done again places all as before.
+        """
         run = header.unit_id, header.boot_id
-        wearer = tracked_unit(header.unit_id) or header.unit_id
-        if t_ns <= self._settled_ns.get(wearer, FOREVER_NS):
-            self._settled.add(run)
-        elif run in self._settled:
-            return
         offset_ns = t_ns - header.t_mono_ns
         self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
 
-    def captured_ns(self, header: Header) -> int | None:
-        """None where nobody can tell."""
+    def captured_ns(self, t_ns: int, header: Header) -> int | None:
+        """Time of a message that was logged at ``t_ns``, and not later than that; None where nobody
+        can tell.
+        """
         offset_ns = self._offsets_ns.get((header.unit_id, header.boot_id))
         if offset_ns is not None:
-            return header.t_mono_ns + offset_ns
-        return header.t_utc_ns if header.utc_std_s > 0.0 else None
+            return min(header.t_mono_ns + offset_ns, t_ns)
+        return min(header.t_utc_ns, t_ns) if header.utc_std_s > 0.0 else None
 
 
 def actions_of(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]]:

@@ -58,7 +58,7 @@ from shared.messages.station import (
 
 
 class Redactor:
-    """Call it with every record of the log; gives what is to stand in its place."""
+    """Call it with every record of the log, in order; gives what is to stand in its place."""
 
     def __init__(
         self,
@@ -66,7 +66,9 @@ class Redactor:
         clocks: CaptureClocks,
         inserted_ids: frozenset[str] = frozenset(),
     ) -> None:
-        """``inserted_ids``: of the erasure's own actions, those that this part of the log has."""
+        """``clocks``: of the records before.  ``inserted_ids``: of the erasure's own actions, those
+        that this part of the log has.
+        """
         self._erasure = erasure
         self._clocks = clocks
         self._inserted_ids = inserted_ids
@@ -96,7 +98,7 @@ class Redactor:
         sender, boot_id, seq = event.number
         wearer = tracked_unit(sender) or sender
         came_late = is_backfilled(key) or parse_unread_key(key) is not None
-        at_any_time = came_late and wearer in self._unit_ids
+        at_any_time = came_late and self._erasure.may_cover(wearer, t_ns)
         if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._mentions(payload)):
             return [record]
         alive = Heartbeat(Header(sender, boot_id, seq, 0), 0, 0)
@@ -132,12 +134,15 @@ class Redactor:
         t_ns, key, _ = record
         sender, channel = parse_key(key)
         header = event.message.header
-        captured_ns = self._clocks.captured_ns(header)
-        times_ns = [] if event.backfilled else [t_ns]
+        times_ns: list[int] = []
+        if not event.backfilled:
+            self._clocks.note(t_ns, header)
+            times_ns.append(t_ns)
+        captured_ns = self._clocks.captured_ns(t_ns, header)
         if captured_ns is not None:
             times_ns.append(captured_ns)
         wearer = tracked_unit(sender) or sender
-        at_any_time = not times_ns and wearer in self._unit_ids
+        at_any_time = not times_ns and self._erasure.may_cover(wearer, t_ns)
         covered = at_any_time or any(self._erasure.covers(wearer, one) for one in times_ns)
         if channel in (DESCRIPTION, HEARTBEAT) or not covered:
             return self._renamed(record)

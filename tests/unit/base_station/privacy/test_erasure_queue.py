@@ -9,7 +9,12 @@ from typing import cast
 
 import pytest
 
-from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue, ErasureState
+from base_station.privacy.erasure_queue import (
+    ErasureJob,
+    ErasureQueue,
+    ErasureState,
+    request_again,
+)
 from base_station.privacy.erasure_service import (
     ErasureProgress,
     ErasureResult,
@@ -30,10 +35,18 @@ class StubEraser:
         self.began: list[str] = []
         self.again: list[bool] = []
         self.done: list[str] = []
+        self.from_peer: list[bool] = []
 
     def person(
-        self, by: str, person_id: str, on_progress: Progress, tally: ErasureProgress
+        self,
+        by: str,
+        person_id: str,
+        on_progress: Progress,
+        tally: ErasureProgress,
+        *,
+        from_peer: bool,
     ) -> ErasureResult:
+        self.from_peer.append(from_peer)
         self.began.append(person_id)
         self.again.append(tally.again)
         on_progress(0.1)
@@ -173,3 +186,26 @@ def test_request_that_cannot_be_saved_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StoreError, match="nothing is done"):
         one.add("ada", "person", "p-1")
     assert one.all() == ()
+
+
+def test_request_that_waits_at_a_standby_is_done_as_the_other_station_has_done_it(
+    tmp_path: Path,
+) -> None:
+    worker = StubEraser()
+    worker.go.set()
+    with desk(worker, tmp_path, lambda job: "" if job.from_peer else "does not lead") as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].problem != "")
+        assert [job.subject_id for job in one.own_waiting()] == ["p-1"], "the leader fetches it"
+        one.add("the other station", "person", "p-1", from_peer=True)
+        until(lambda: worker.done == ["p-1"])
+        assert [(job.by, job.from_peer) for job in one.all()] == [("ada", True)]
+        assert one.own_waiting() == ()
+    assert worker.from_peer == [True]
+
+
+def test_erasure_whose_order_was_cut_off_is_requested_again(tmp_path: Path) -> None:
+    for _ in range(2):
+        request_again(tmp_path / "kept.json", "person", "p-1")
+    (waiting,) = desk(StubEraser(), tmp_path).own_waiting()
+    assert (waiting.kind, waiting.subject_id) == ("person", "p-1")

@@ -29,6 +29,7 @@ export const audit_action: Part<"audit_action"> = {
   PlaceBeacon: "Bake gesetzt",
   RemoveBeacon: "Bake entfernt",
   ForgetWearers: "Träger gelöscht",
+  BeginErasure: "Löschung begonnen",
   TakeOver: "Führung übernommen",
   DoneApart: "Getrennt geschehen",
   NoteDispatch: "Einsatzauftrag notiert",

@@ -28,6 +28,7 @@ export const audit_action = {
   PlaceBeacon: "Place beacon",
   RemoveBeacon: "Remove beacon",
   ForgetWearers: "Forget wearers",
+  BeginErasure: "Begin erasure",
   TakeOver: "Take over",
   DoneApart: "Done apart",
   NoteDispatch: "Note dispatch",

@@ -29,6 +29,7 @@ export const audit_action: Part<"audit_action"> = {
   PlaceBeacon: "Balise placée",
   RemoveBeacon: "Balise retirée",
   ForgetWearers: "Porteurs effacés",
+  BeginErasure: "Effacement commencé",
   TakeOver: "Prise de relais",
   DoneApart: "Fait séparément",
   NoteDispatch: "Départ noté",

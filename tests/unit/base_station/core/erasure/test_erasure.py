@@ -11,7 +11,6 @@ from base_station.core.erasure.erasure import (
     Record,
     Wearing,
     erasure_of_person,
-    first_erased_ns,
     inserted_action_id,
     is_inserted,
     raised_of,
@@ -26,7 +25,6 @@ from shared.messages.station import (
     Action,
     Assign,
     CloseIncident,
-    ForgetWearers,
     OpenIncident,
     Unassign,
 )
@@ -221,23 +219,25 @@ def test_action_of_a_person_is_no_inserted_one_whatever_the_units_name() -> None
         assert is_inserted(done_by) is inserted
 
 
-@pytest.mark.parametrize(("sender", "captured_ns"), [("A", 115), ("A@tracker", 115), ("B", 113)])
-def test_later_erasure_of_a_pair_places_every_message_as_the_first(
-    sender: str, captured_ns: int
-) -> None:
-    """Though it has received less delayed messages of the unit since."""
-    actions = done((10, ana("A")), (30, ForgetWearers("A")), (200, Unassign("A")),
-                   (300, ForgetWearers("A")), (400, ForgetWearers("A")))  # fmt: skip
-    erasure = erasure_of_person(actions, "p1", (), NOW_NS)
-    clocks = CaptureClocks(first_erased_ns(actions, erasure))
-    for t_ns, delay_ns in ((50, 9), (300, 5), (301, 3)):
+@pytest.mark.parametrize("sender", ["A", "A@tracker"])
+def test_message_is_placed_by_the_least_delayed_one_before_it(sender: str) -> None:
+    clocks = CaptureClocks()
+    late = Header(sender, 7, 1, 10)
+    assert clocks.captured_ns(900, late) is None
+    for t_ns, delay_ns, captured_ns in ((50, 9, 119), (300, 12, 119), (301, 3, 113)):
         clocks.note(t_ns, Header(sender, 7, t_ns, t_ns - delay_ns - 100))
-    assert clocks.captured_ns(Header(sender, 7, 1, 10)) == captured_ns
+        assert clocks.captured_ns(900, late) == captured_ns
+    assert clocks.captured_ns(105, late) == 105, "it was captured before it was logged"
 
 
-def test_run_without_earlier_messages_is_placed_by_later_ones() -> None:
-    actions = done((10, ana("A")), (200, Unassign("A")), (300, ForgetWearers("A")))
-    clocks = CaptureClocks(first_erased_ns(actions, erasure_of_person(actions, "p1", (), NOW_NS)))
-    for t_ns, delay_ns in ((400, 9), (500, 3)):
-        clocks.note(t_ns, Header("A", 8, t_ns, t_ns - delay_ns - 100))
-    assert clocks.captured_ns(Header("A", 8, 1, 10)) == 113
+def test_run_of_which_nothing_came_live_is_placed_by_the_unit_itself() -> None:
+    clocks = CaptureClocks()
+    clocks.note(50, Header("A", 7, 1, 10))
+    assert clocks.captured_ns(900, Header("A", 8, 1, 10, 70, 0.1)) == 70
+    assert clocks.captured_ns(900, Header("A", 8, 1, 10, 70, 0.0)) is None
+
+
+def test_message_of_an_unknown_time_may_be_of_a_wearer_before_it_and_of_none_behind() -> None:
+    erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", (), NOW_NS)
+    assert [erasure.may_cover("A", t_ns) for t_ns in (9, 10, 99)] == [False, True, True]
+    assert not erasure.may_cover("B", 99)
