@@ -38,7 +38,7 @@ from shared.messages.station import (
     ResolveAlarm,
     Unassign,
 )
-from tests.rig.erasure_folders import NoPulls
+from tests.rig.erasure_folders import NoPulls, acting_in
 from tests.rig.erasure_scenario import ANA, BO, Walker, names_in, stored_in
 from tests.rig.live_station import LiveStation
 from tests.rig.waiting import until
@@ -125,7 +125,7 @@ def test_damaged_segment_is_repaired_from_the_other_station_before_erasure(
         closing.callback(recorder.close)
         disk = open_storage(folder, recorder, clock, lambda _: None, closing, alone=False)
         desk = disk.forgetting_desk(
-            NoPulls(), lambda *_: None, lambda: None, lambda: True, lambda: True, lambda *_: 0
+            NoPulls(), acting_in(recorder), lambda: None, lambda: True, lambda: True, lambda *_: 0
         )
         with desk:
             desk.add("ada", "person", "p-77")
@@ -160,7 +160,7 @@ def test_checkpoints_are_removed_after_the_erasure_in_memory(
             ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()), SystemClock(),
             NoPulls(), lambda _by, _action: RecordingActions(),
         ).incident("ada", "i1")  # fmt: skip
-        assert happened == ["acted", "acted", "cleared", "cleared"]
+        assert happened == ["acted", "acted", "acted", "cleared", "cleared"]
         monkeypatch.setattr(forgetter_module, "_ACTED_WITHIN_S", 0.0)
         with pytest.raises(StoreError, match="did not get to"):
             ErasureService(
