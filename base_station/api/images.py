@@ -65,7 +65,13 @@ def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
     smaller than the upload.  Raises ConfigError with the fault of the upload.
     """
     if len(upload) > MAX_MAP_BYTES:
-        raise ConfigError(f"the map is larger than {MAX_MAP_BYTES // 1_000_000} MB")
+        raise ConfigError(
+            coded(
+                "map-too-many-bytes",
+                "the map is larger than {most_mb} MB",
+                most_mb=MAX_MAP_BYTES // 1000000,
+            )
+        )
     try:
         with (
             warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning),
@@ -80,7 +86,9 @@ def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         raise ConfigError(_too_many_pixels("map")) from None
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
-        raise ConfigError("the map cannot be read; send a JPEG, PNG or WebP file") from error
+        raise ConfigError(
+            coded("map-unreadable", "the map cannot be read; send a JPEG, PNG or WebP file")
+        ) from error
     written = io.BytesIO()
     picture.save(written, "WEBP", quality=85)
     webp = written.getvalue()

@@ -14,6 +14,7 @@ from base_station.api.hub import Hub
 from base_station.engine.ports import LiveSource
 from base_station.storage.db.models import IncidentRow
 from base_station.views.wire import ReplayView
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MAX_REPLAYS = 8
@@ -99,7 +100,13 @@ class Replays:
 
     def _require_room(self) -> None:
         if len(self._open) >= MAX_REPLAYS:
-            raise UserError(f"{MAX_REPLAYS} replays are open already; end one of them")
+            raise UserError(
+                coded(
+                    "replays-too-many",
+                    "{most} replays are open already; end one of them",
+                    most=MAX_REPLAYS,
+                )
+            )
 
     def get(self, replay_id: str) -> OpenReplay | None:
         with self._lock:

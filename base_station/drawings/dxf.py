@@ -14,12 +14,17 @@ from base_station.drawings.shapes import MOST_POINTS, DrawnShape, Point, box_of,
 from shared.coded_text import coded
 from shared.errors import UserError
 
-_MISSING = (
-    "the library ezdxf, which reads DXF, is not installed at the station: pip install "
-    "--require-hashes -r deploy/requirements-plans.lock; or print the drawing to PDF"
+_MISSING = coded(
+    "dxf-library-missing",
+    "the library ezdxf, which reads DXF, is not installed at the station: pip "
+    "install --require-hashes -r deploy/requirements-plans.lock; or print the "
+    "drawing to PDF",
 )
 _UNITS: dict[int, LengthUnit] = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}  # of $INSUNITS
-_NO_UNIT = "the DXF does not say in which unit of length it is drawn; choose it, and send it again"
+_NO_UNIT = coded(
+    "dxf-no-unit",
+    "the DXF does not say in which unit of length it is drawn; choose it, and send it again",
+)
 _DRAWN = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "ELLIPSE", "SPLINE", "CIRCLE"}
 _WALLS = re.compile(r"wall|wand|w[äa]nde|mauer|\bmurs?\b", re.IGNORECASE)
 _STAIRS = re.compile(r"stair|trepp|escalier", re.IGNORECASE)
@@ -35,7 +40,9 @@ def read_dxf(content: bytes, options: Options) -> Draft:
     try:
         document, _ = recover.read(io.BytesIO(content))
     except (library.DXFError, OSError, ValueError) as error:
-        raise UserError("the DXF cannot be read; save it anew, or print it to PDF") from error
+        raise UserError(
+            coded("dxf-unreadable", "the DXF cannot be read; save it anew, or print it to PDF")
+        ) from error
     unit = options.unit or _UNITS.get(document.header.get("$INSUNITS", 0))
     if unit is None:
         raise UserError(_NO_UNIT)
@@ -43,7 +50,7 @@ def read_dxf(content: bytes, options: Options) -> Draft:
     named = any(_WALLS.search(layer) for layer, _ in lines)
     shapes = [shape for layer, points in lines for shape in _shapes(layer, points, named)]
     if not shapes:
-        raise UserError("the drawing has no line that could be a wall")
+        raise UserError(coded("dxf-no-wall", "the drawing has no line that could be a wall"))
     # Drawings begin anywhere, often far away in a grid of a survey.
     west, south, _, _ = box_of(point for shape in shapes for point in shape.points)
     placed = [
@@ -88,7 +95,11 @@ def _lines(modelspace: Any, metres: float) -> Iterator[tuple[str, list[Point]]]:
         count += len(points)
         if count > MOST_POINTS:
             raise UserError(
-                f"the DXF has more than {MOST_POINTS} points; leave out furniture and hatching"
+                coded(
+                    "dxf-too-fine",
+                    "the DXF has more than {most} points; leave out furniture and hatching",
+                    most=MOST_POINTS,
+                )
             )
         if len(points) >= 2:
             yield str(primitive.entity.dxf.layer), points

@@ -14,7 +14,7 @@ import msgspec
 
 from base_station.drawings.draft import Draft, noted
 from base_station.drawings.shapes import DrawnShape, Point, box_of, plan_of
-from shared.coded_text import coded
+from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -22,8 +22,10 @@ _MOST_UNPACKED_BYTES = 60_000_000
 _KINDS = {"wall", "outline", "stairs", "room", "door"}
 _STAIRS = {"stairs", "steps", "escalator", "ramp"}
 _NUMBER = re.compile(r"-?\d+")
-_NOT_DEGREES = (
-    "the coordinates of this GeoJSON are no degrees of longitude and latitude; save it in EPSG:4326"
+_NOT_DEGREES = coded(
+    "geojson-not-degrees",
+    "the coordinates of this GeoJSON are no degrees of longitude and latitude; "
+    "save it in EPSG:4326",
 )
 
 
@@ -49,16 +51,28 @@ def read_imdf(content: bytes, name: str) -> Draft:
                 if entry.filename.endswith(".geojson")
             }
             if "level.geojson" not in files:
-                raise UserError("this ZIP file is no IMDF: it has no level.geojson")
+                raise UserError(
+                    coded("zip-no-imdf", "this ZIP file is no IMDF: it has no level.geojson")
+                )
             wanted = [files[one] for one in _IMDF if one in files]
             if sum(one.file_size for one in wanted) > _MOST_UNPACKED_BYTES:
-                raise UserError("this IMDF is larger than 60 MB; send one building of it")
+                raise UserError(
+                    coded(
+                        "imdf-too-large", "this IMDF is larger than 60 MB; send one building of it"
+                    )
+                )
             parts = {
                 entry.filename.rpartition("/")[2]: _features(archive.read(entry), entry.filename)
                 for entry in wanted
             }
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as error:
-        raise UserError(f"this ZIP file cannot be read: {error}") from error
+        raise UserError(
+            coded(
+                "zip-unreadable",
+                "this ZIP file cannot be read: {error}",
+                error=text_of_error(error),
+            )
+        ) from error
     levels = parts["level.geojson"]
     floors = {str(one.get("id")): _ordinal(_properties(one)) for one in levels}
     found = []
@@ -116,7 +130,7 @@ def _draft(name: str, tagged: Iterable[_Tagged]) -> Draft:
         left += not lines
         found += [_Found(kind, floor, line, label) for line in lines]
     if not found:
-        raise UserError("this GeoJSON has no line and no area")
+        raise UserError(coded("geojson-empty", "this GeoJSON has no line and no area"))
     degrees = [point for one in found for point in one.degrees]
     if any(abs(lon) > 180.0 or abs(lat) > 90.0 for lon, lat in degrees):
         raise UserError(_NOT_DEGREES)
@@ -152,9 +166,18 @@ def _features(content: bytes, where: str) -> list[Mapping[str, Any]]:
     try:
         document = msgspec.json.decode(content.removeprefix(b"\xef\xbb\xbf"))
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"{where} is no JSON: {error}") from error
+        raise UserError(
+            coded(
+                "geojson-no-json",
+                "{file} is no JSON: {error}",
+                file=where,
+                error=text_of_error(error),
+            )
+        ) from error
     if not isinstance(document, dict) or not isinstance(document.get("features"), list):
-        raise UserError(f"{where} is no GeoJSON FeatureCollection")
+        raise UserError(
+            coded("geojson-no-collection", "{file} is no GeoJSON FeatureCollection", file=where)
+        )
     return [one for one in document["features"] if isinstance(one, dict)]
 
 
@@ -191,7 +214,9 @@ def _lines(feature: Mapping[str, Any]) -> Iterator[list[tuple[float, float]]]:
             if len(points) >= 2:
                 yield points
     except (TypeError, ValueError, IndexError, KeyError) as error:
-        raise UserError("this GeoJSON has coordinates that are no numbers") from error
+        raise UserError(
+            coded("geojson-no-numbers", "this GeoJSON has coordinates that are no numbers")
+        ) from error
 
 
 def _ordinal(properties: Mapping[str, Any]) -> int:

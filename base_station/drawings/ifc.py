@@ -24,21 +24,28 @@ ENDING = ".ifc"
 _ENDS = b"END-ISO-10303-21"
 _LAST_BYTES = 4096  # among which a whole file ends
 _MOST_UNPACKED_BYTES = 100_000_000
-_MISSING = (
-    "the library ifcopenshell, which reads IFC, is not installed at the station: pip install "
-    "--require-hashes -r deploy/requirements-ifc.lock; or export the floors as DXF, IMDF or PDF"
+_MISSING = coded(
+    "ifc-library-missing",
+    "the library ifcopenshell, which reads IFC, is not installed at the "
+    "station: pip install --require-hashes -r deploy/requirements-ifc.lock; or "
+    "export the floors as DXF, IMDF or PDF",
 )
-_UNREADABLE = (
-    "the IFC cannot be read; save it anew as IFC2x3, IFC4 or IFC4x3, or print its floors to PDF"
+_UNREADABLE = coded(
+    "ifc-unreadable",
+    "the IFC cannot be read; save it anew as IFC2x3, IFC4 or IFC4x3, or print its floors to PDF",
 )
-_CONTRADICTORY = (
-    "the IFC has references that its schema does not allow; check it and save it anew, or print "
-    "its floors to PDF"
+_CONTRADICTORY = coded(
+    "ifc-contradictory",
+    "the IFC has references that its schema does not allow; check it and save "
+    "it anew, or print its floors to PDF",
 )
-_NO_STOREY = (
-    "the IFC has no storeys (IfcBuildingStorey): export it with them, or print its floors to PDF"
+_NO_STOREY = coded(
+    "ifc-no-storey",
+    "the IFC has no storeys (IfcBuildingStorey): export it with them, or print its floors to PDF",
 )
-_NO_WALL = "the IFC has no wall with a shape on any of its storeys; print its floors to PDF"
+_NO_WALL = coded(
+    "ifc-no-wall", "the IFC has no wall with a shape on any of its storeys; print its floors to PDF"
+)
 _SUGGESTED = coded(
     "note-suggested",
     "Its place on the Earth is that of its site, which many drawing programs set by themselves: "
@@ -121,7 +128,9 @@ def _is_ifc(entry: zipfile.ZipInfo) -> bool:
 
 def _opened(content: bytes) -> Any:
     if _ENDS not in content[-_LAST_BYTES:]:
-        raise UserError("the IFC is torn: its end is missing; copy or save it anew")
+        raise UserError(
+            coded("ifc-torn", "the IFC is torn: its end is missing; copy or save it anew")
+        )
     library: Any = import_module("ifcopenshell")
     try:
         # Its own letters are ASCII; others are escaped by the standard, or wrongly of some code.
@@ -153,7 +162,12 @@ def _solids(file: Any, building: ModelBuilding) -> dict[int, Solid]:
             solids[made.id] = Solid(vertices, triangles)
             count += len(vertices)
         if count > 100 * MOST_POINTS:
-            raise UserError("the IFC has too much detail; export walls, doors and stairs only")
+            raise UserError(
+                coded(
+                    "ifc-too-detailed",
+                    "the IFC has too much detail; export walls, doors and stairs only",
+                )
+            )
     return solids
 
 

@@ -8,13 +8,16 @@ from typing import Any
 
 from PIL import Image
 
+from shared.coded_text import coded
 from shared.errors import UserError
 
 BEGINS = b"%PDF-"
 _SIDE_PX = 2048
-_MISSING = (
-    "the library pypdfium2, which reads PDF, is not installed at the station: pip install "
-    "--require-hashes -r deploy/requirements-plans.lock; or save the page as a PNG"
+_MISSING = coded(
+    "pdf-library-missing",
+    "the library pypdfium2, which reads PDF, is not installed at the station: "
+    "pip install --require-hashes -r deploy/requirements-plans.lock; or save "
+    "the page as a PNG",
 )
 
 
@@ -27,14 +30,26 @@ def page_of(content: bytes, number: int) -> tuple[Image.Image, int]:
         document = library.PdfDocument(content)
         pages = len(document)
         if not 1 <= number <= pages:
-            raise UserError(f"the PDF has no page {number}: it has {pages}")
+            raise UserError(
+                coded(
+                    "pdf-no-page",
+                    "the PDF has no page {page}: it has {pages}",
+                    page=number,
+                    pages=pages,
+                )
+            )
         page = document[number - 1]
         scale = _SIDE_PX / max(*page.get_size(), 1.0)
         picture: Image.Image = page.render(scale=scale).to_pil()
     except library.PdfiumError as error:
         if "password" in str(error).lower():
             raise UserError(
-                "the PDF is encrypted; save it without a password, and send that"
+                coded(
+                    "pdf-encrypted",
+                    "the PDF is encrypted; save it without a password, and send that",
+                )
             ) from error
-        raise UserError("the PDF cannot be read; save the page as a PNG, and send that") from error
+        raise UserError(
+            coded("pdf-unreadable", "the PDF cannot be read; save the page as a PNG, and send that")
+        ) from error
     return picture.convert("RGB"), pages

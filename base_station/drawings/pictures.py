@@ -10,6 +10,7 @@ import warnings
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from base_station.drawings.draft import DrawnPicture
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MOST_PIXELS = 52_000_000  # of a file: a camera's 50 million are a few more
@@ -34,7 +35,9 @@ def read_picture(content: bytes) -> DrawnPicture:
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         raise UserError(_TOO_LARGE) from None
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
-        raise UserError("the picture cannot be read; save it as PNG, JPEG or WebP") from error
+        raise UserError(
+            coded("picture-unreadable", "the picture cannot be read; save it as PNG, JPEG or WebP")
+        ) from error
 
 
 def _upright(opened: Image.Image) -> Image.Image:
@@ -55,7 +58,7 @@ def _upright(opened: Image.Image) -> Image.Image:
 def encoded(picture: Image.Image) -> DrawnPicture:
     """As large as goes into ``_MOST_BYTES``, and never larger than it was."""
     if min(picture.size) < 2:
-        raise UserError("the picture has no more than a line of pixels")
+        raise UserError(coded("picture-is-line", "the picture has no more than a line of pixels"))
     for side_px in _SIDES_PX:
         smaller = picture.copy()
         smaller.thumbnail((side_px, side_px), Image.Resampling.LANCZOS)
@@ -63,4 +66,9 @@ def encoded(picture: Image.Image) -> DrawnPicture:
         smaller.save(written, "WEBP", quality=60)
         if written.tell() <= _MOST_BYTES:
             return DrawnPicture(written.getvalue(), *smaller.size)
-    raise UserError("the picture has too much detail for a plan; send one with fewer colours")
+    raise UserError(
+        coded(
+            "picture-too-detailed",
+            "the picture has too much detail for a plan; send one with fewer colours",
+        )
+    )

@@ -10,7 +10,7 @@ import sys
 import msgspec
 
 from base_station.drawings.draft import Draft, DrawingRefusal, Options
-from shared.coded_text import text_with_code
+from shared.coded_text import coded, text_with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 60.0
@@ -32,9 +32,18 @@ def draft_of(content: bytes, options: Options) -> Draft:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise UserError("the drawing took too long to be read; send a part of it") from None
+        raise UserError(
+            coded(
+                "drawing-took-too-long", "the drawing took too long to be read; send a part of it"
+            )
+        ) from None
     if done.returncode != 0:
-        raise UserError("the drawing cannot be read; save it anew, or as a PNG, and send that")
+        raise UserError(
+            coded(
+                "drawing-unreadable",
+                "the drawing cannot be read; save it anew, or as a PNG, and send that",
+            )
+        )
     answer = msgspec.json.decode(done.stdout, type=Draft | DrawingRefusal)
     if isinstance(answer, DrawingRefusal):
         raise UserError(text_with_code(answer.reason, answer.code))

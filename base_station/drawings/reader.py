@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base_station.drawings import dxf, geojson, ifc, pdf, pictures
 from base_station.drawings.draft import Draft, Options
+from shared.coded_text import coded
 from shared.errors import UserError
 
 _PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF")  # PNG, JPEG, WebP
@@ -37,7 +38,13 @@ def read_drawing(content: bytes, options: Options) -> Draft:
     for beginning, advice in _OTHERS.items():
         if text.startswith(beginning):
             raise UserError(advice)
-    raise UserError(f"this file is no drawing that can be read; send {_KINDS}")
+    raise UserError(
+        coded(
+            "drawing-unknown",
+            "this file is no drawing that can be read; send {kinds}",
+            kinds=_KINDS,
+        )
+    )
 
 
 def _read_zipped(content: bytes, options: Options) -> Draft:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from shared.coded_text import coded
 from shared.errors import UserError
 
 STOREY_M = 3.2  # where the file does not have the height of a floor
@@ -30,7 +31,7 @@ def plan_of(
     ``heights_m`` of the floors above the ground floor; without, they are ``STOREY_M`` apart.
     """
     if not shapes:
-        raise UserError("the drawing has no line that could be a wall")
+        raise UserError(coded("drawing-no-wall", "the drawing has no line that could be a wall"))
     require_size([point for shape in shapes for point in shape.points])
     if heights_m is None:
         heights_m = {shape.floor: shape.floor * STOREY_M for shape in shapes}
@@ -58,7 +59,11 @@ def require_size(points: Sequence[Point]) -> None:
     """UserError where it is too small to walk in, or no site is so large."""
     if len(points) > MOST_POINTS:
         raise UserError(
-            f"the drawing has more than {MOST_POINTS} points; leave out furniture and hatching"
+            coded(
+                "drawing-too-fine",
+                "the drawing has more than {most} points; leave out furniture and hatching",
+                most=MOST_POINTS,
+            )
         )
     west, south, east, north = box_of(points)
     size_m = max(east - west, north - south)

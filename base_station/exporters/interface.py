@@ -13,6 +13,7 @@ import msgspec
 from base_station.storage.db.records import TrackSample
 from base_station.views.answer import to_ms
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -84,8 +85,11 @@ class IncidentTracks:
         """For formats that know only places on the Earth; UserError without an anchor."""
         if self.anchor is None:
             raise UserError(
-                "the site has no place on the Earth, so this format cannot be written: set the "
-                "anchor, or export as csv"
+                coded(
+                    "export-no-anchor",
+                    "the site has no place on the Earth, so this format cannot be written: set "
+                    "the anchor, or export as csv",
+                )
             )
         return self.anchor
 

@@ -9,6 +9,7 @@ import msgspec
 
 from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
 from base_station.storage.db.window import FOREVER_NS
+from shared.coded_text import coded
 from shared.errors import UserError
 
 
@@ -25,7 +26,12 @@ class TrackSelection:
         self._require_known(incident)
         chosen = LazyTracks(lambda: self._chosen(incident.tracks))
         if any(True for _ in incident.tracks) and not any(True for _ in chosen):
-            raise UserError("none of the selected people and units has a track in that time")
+            raise UserError(
+                coded(
+                    "export-no-track",
+                    "none of the selected people and units has a track in that time",
+                )
+            )
         return replace(incident, tracks=chosen)
 
     def _chosen(self, tracks: Iterable[WornTrack]) -> Iterator[WornTrack]:

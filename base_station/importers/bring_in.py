@@ -19,6 +19,7 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.imports import ImportedContent, import_id_of
 from shared.clock import NS_PER_S
+from shared.coded_text import coded, text_of_error
 from shared.errors import StoreError, UserError
 from shared.geo import Anchor
 from shared.messages.station import ImportFile
@@ -38,8 +39,11 @@ def require_anchor(records: Records, incident: IncidentRow) -> Anchor:
     anchor = anchor_of(records, incident)
     if anchor is None:
         raise UserError(
-            "the incident's site has no place on the Earth, so nothing from elsewhere can be put "
-            "on its plan: set the anchor first (Site in the console)"
+            coded(
+                "import-no-anchor",
+                "the incident's site has no place on the Earth, so nothing from elsewhere "
+                "can be put on its plan: set the anchor first (Site in the console)",
+            )
         )
     return anchor
 
@@ -98,7 +102,14 @@ class ImportDesk:
             content = content_of(path, options)
             self._require_time(content)
         except UserError as error:
-            raise UserError(f"{options.file_name} was not brought in: {error}") from error
+            raise UserError(
+                coded(
+                    "import-refused",
+                    "{file} was not brought in: {reason}",
+                    file=options.file_name,
+                    reason=text_of_error(error),
+                )
+            ) from error
         return msgspec.structs.replace(content, warnings=(*content.warnings, *self._far(content)))
 
     def _require_time(self, content: ImportedContent) -> None:

@@ -10,6 +10,7 @@ import msgspec
 
 from base_station.storage.imports import ImportedContent, ImportedPoint
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MOST_BYTES = 512 << 20  # of a file
@@ -53,7 +54,11 @@ class TrackPoints:
             self._total += 1
             if self._total > MOST_POINTS:
                 raise UserError(
-                    f"it has more than {MOST_POINTS} points, one a second: cut it by time"
+                    coded(
+                        "import-points-too-many",
+                        "it has more than {most} points, one a second: cut it by time",
+                        most=MOST_POINTS,
+                    )
                 )
 
     def take(self) -> tuple[ImportedPoint, ...]:
@@ -62,5 +67,11 @@ class TrackPoints:
         self._points.clear()
         self._tracks += bool(points)
         if self._tracks > MOST_TRACKS:
-            raise UserError(f"it has more than {MOST_TRACKS} tracks: take a part of it")
+            raise UserError(
+                coded(
+                    "import-tracks-too-many",
+                    "it has more than {most} tracks: take a part of it",
+                    most=MOST_TRACKS,
+                )
+            )
         return points

@@ -14,6 +14,7 @@ from base_station.importers.interface import Importer, ImportOptions
 from base_station.storage.imports import ImportedContent, ImportedPoint, ImportedTrack
 from base_station.storage.small_picture import small_jpeg
 from shared.clock import NS_PER_S
+from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 
 PICTURE_SIDE_PX = 320
@@ -38,9 +39,20 @@ def read_photo(path: Path, options: ImportOptions) -> ImportedContent:
             t_ns, warning = _time_ns(details, gps, options.utc_offset_h)
             picture = small_jpeg(image, PICTURE_SIDE_PX)
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
-        raise UserError("it has too many pixels; save it smaller, with its Exif data") from error
+        raise UserError(
+            coded(
+                "photo-import-too-large",
+                "it has too many pixels; save it smaller, with its Exif data",
+            )
+        ) from error
     except (OSError, ValueError, SyntaxError) as error:
-        raise UserError(f"it is no picture that can be read: {error}") from error
+        raise UserError(
+            coded(
+                "photo-import-unreadable",
+                "it is no picture that can be read: {error}",
+                error=text_of_error(error),
+            )
+        ) from error
     point = ImportedPoint(t_ns, lat_deg, lon_deg, _height_m(gps))
     track = ImportedTrack(options.file_name, (point,))
     return ImportedContent(PHOTO.name, (track,), (warning,) if warning else (), picture)
@@ -54,8 +66,11 @@ def _place(gps: _Tags) -> tuple[float, float]:
         west = str(gps.get(ExifTags.GPS.GPSLongitudeRef, "E")).upper().startswith("W")
     except (KeyError, TypeError, ValueError, ZeroDivisionError) as error:
         raise UserError(
-            "it has no place in its Exif data: the camera had no fix, or the place was taken out "
-            "on the way; take the original file"
+            coded(
+                "photo-import-no-place",
+                "it has no place in its Exif data: the camera had no fix, or the place was "
+                "taken out on the way; take the original file",
+            )
         ) from error
     lat_deg, lon_deg = -lat_deg if south else lat_deg, -lon_deg if west else lon_deg
     if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0):  # no number is neither
@@ -89,7 +104,9 @@ def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[in
         local = datetime.strptime(taken, "%Y:%m:%d %H:%M:%S")  # noqa: DTZ007  # its zone follows
     except ValueError as error:
         if fix_ns is None:
-            raise UserError("its Exif data do not say when it was taken") from error
+            raise UserError(
+                coded("photo-import-no-time", "its Exif data do not say when it was taken")
+            ) from error
         return fix_ns, _OF_FIX
     if zone:
         try:

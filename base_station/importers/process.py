@@ -12,7 +12,7 @@ import msgspec
 
 from base_station.importers.interface import ImportOptions
 from base_station.storage.imports import ImportedContent
-from shared.coded_text import NO_CODE, TextCode, code_of_text, text_with_code
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 1200.0
@@ -44,9 +44,16 @@ def content_of(path: Path, options: ImportOptions) -> ImportedContent:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise UserError("it took too long to be read: take a part of it") from None
+        raise UserError(
+            coded("import-took-too-long", "it took too long to be read: take a part of it")
+        ) from None
     if done.returncode != 0 or not done.stdout:
-        raise UserError("it cannot be read: it may be damaged; save it again, and bring that in")
+        raise UserError(
+            coded(
+                "import-unreadable",
+                "it cannot be read: it may be damaged; save it again, and bring that in",
+            )
+        )
     is_read, encoded = done.stdout[0], done.stdout[1:]
     if not is_read:
         refusal = msgspec.msgpack.decode(encoded, type=ImportRefusal)

@@ -10,6 +10,7 @@ from base_station.importers import IMPORTERS
 from base_station.importers.interface import MOST_BYTES, Importer, ImportOptions
 from base_station.storage.imports import ImportedContent
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 
 _HEAD_BYTES = 4096
@@ -27,7 +28,14 @@ def read_import(path: Path, options: ImportOptions) -> ImportedContent:
     """
     size_bytes = path.stat().st_size
     if size_bytes > MOST_BYTES:
-        raise UserError(f"it has {size_bytes >> 20} MB, and at most {MOST_BYTES >> 20} are taken")
+        raise UserError(
+            coded(
+                "import-too-large",
+                "it has {size_mb} MB, and at most {most_mb} are taken",
+                size_mb=size_bytes >> 20,
+                most_mb=MOST_BYTES >> 20,
+            )
+        )
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     return _shifted(_importer_of(head).read(path, options), options.shift_s)
@@ -41,10 +49,17 @@ def _importer_of(head: bytes) -> Importer:
         if head.startswith(beginning):
             raise UserError(advice)
     if head[4:8] == _HEIF:
-        raise UserError("pictures as HEIC are not read: save it as JPEG, with its Exif data")
+        raise UserError(
+            coded(
+                "import-heic", "pictures as HEIC are not read: save it as JPEG, with its Exif data"
+            )
+        )
     raise UserError(
-        "it is nothing that can be brought in: take a GPX or KML track, a JPEG, PNG, TIFF or WebP "
-        "photograph, or an incident of another station (MCAP)"
+        coded(
+            "import-unknown",
+            "it is nothing that can be brought in: take a GPX or KML track, a JPEG, "
+            "PNG, TIFF or WebP photograph, or an incident of another station (MCAP)",
+        )
     )
 
 

@@ -14,6 +14,7 @@ from base_station.importers.interface import Importer, ImportOptions, TrackPoint
 from base_station.replay.incident_file import IncidentInFile, read_incident_file
 from base_station.storage.imports import ImportedContent, ImportedPoint, ImportedTrack
 from shared.channels import FUSED, OPERATOR
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.mcap_log import SegmentReader
@@ -41,7 +42,9 @@ def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent
     whole = read_incident_file(path)
     incident = whole or _incident_in_torn(path)
     if incident.incident_id == options.incident_id:
-        raise UserError("it is this very incident, as this station recorded it")
+        raise UserError(
+            coded("import-same-incident", "it is this very incident, as this station recorded it")
+        )
     found = _Trails(incident)
     with SegmentReader(path) as reader:
         newer = 0
@@ -80,13 +83,27 @@ def _incident_in_torn(path: Path) -> IncidentInFile:
         return IncidentInFile(*incident, {})
     if _OPERATOR_KEY in topics:
         raise UserError(
-            f"it is a part of a station's log, not an incident that stands alone: {_HOW}"
+            coded(
+                "import-part-of-log",
+                "it is a part of a station's log, not an incident that stands alone: {how}",
+                how=_HOW,
+            )
         )
     if any(topic.startswith("muster/") for topic in topics):
         raise UserError(
-            f"it is a recording of a unit, and no incident: track it with muster edge, or {_HOW}"
+            coded(
+                "import-unit-recording",
+                "it is a recording of a unit, and no incident: track it with muster edge, or {how}",
+                how=_HOW,
+            )
         )
-    raise UserError(f"nothing in it is of Muster, or nothing can be read: {_HOW}")
+    raise UserError(
+        coded(
+            "import-not-of-muster",
+            "nothing in it is of Muster, or nothing can be read: {how}",
+            how=_HOW,
+        )
+    )
 
 
 def _action_of(event: StationEvent) -> Action | None:

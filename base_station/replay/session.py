@@ -20,6 +20,7 @@ from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import GapView, ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.coded_text import coded
 from shared.errors import ArchiveError, UserError
 from shared.log_on_change import LogOnChange
 
@@ -353,5 +354,13 @@ class ReplaySession:
 
 def checked_speed(speed: float) -> float:
     if not (math.isfinite(speed) and SLOWEST <= speed <= FASTEST):
-        raise UserError(f"a replay runs at {SLOWEST} to {FASTEST:.0f} times real time, not {speed}")
+        raise UserError(
+            coded(
+                "replay-speed",
+                "a replay runs at {slowest} to {fastest:.0f} times real time, not {speed}",
+                slowest=SLOWEST,
+                fastest=FASTEST,
+                speed=speed,
+            )
+        )
     return speed

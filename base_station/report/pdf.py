@@ -13,13 +13,16 @@ from typing import Any
 
 from PIL import ImageFile
 
+from shared.coded_text import coded
 from shared.errors import UserError
 
 # Its remarks are about printing styles that it does not know; there is nothing to do about them.
 logging.getLogger("weasyprint").setLevel(logging.ERROR)
-_MISSING = (
-    "the library weasyprint, which writes PDF, is not installed: pip install --require-hashes -r "
-    "deploy/requirements-report.lock; or print the HTML report in a browser"
+_MISSING = coded(
+    "report-library-missing",
+    "the library weasyprint, which writes PDF, is not installed: pip install "
+    "--require-hashes -r deploy/requirements-report.lock; or print the HTML "
+    "report in a browser",
 )
 _NO_PANGO = (
     "the library weasyprint, which writes PDF, lacks a library of the system ({}): apt-get install "

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 import msgspec
 
 from base_station.site.utm import lat_lon_of, zone_of
+from shared.coded_text import coded
 from shared.errors import ConfigError
 
 DEGREES, WEB_MAPS = "EPSG:4326", "EPSG:3857"
@@ -39,7 +40,7 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
     """Corners by a world file; raises ConfigError for a wrong one."""
     lat_lon = _grid(crs)
     if len(world) != 6 or not all(math.isfinite(value) for value in world):
-        raise ConfigError("a world file has six numbers, one a line")
+        raise ConfigError(coded("world-file-unfit", "a world file has six numbers, one a line"))
     a, d, b, e, c, f = world
 
     def at(column: float, row: float) -> LatLon:
@@ -51,7 +52,13 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
     lons = [corner[1] for corner in (corners.upper_left, corners.upper_right, corners.lower_left)]
     on_earth = all(abs(lat) <= FURTHEST_LAT_DEG for lat in lats)
     if not (on_earth and all(abs(lon) <= 180.0 for lon in lons)):
-        raise ConfigError(f"as {crs} the world file's numbers lie nowhere on the Earth")
+        raise ConfigError(
+            coded(
+                "world-file-off-earth",
+                "as {grid} the world file's numbers lie nowhere on the Earth",
+                grid=crs,
+            )
+        )
     sides_m = [
         _apart_m(corners.upper_left, other) for other in (corners.upper_right, corners.lower_left)
     ]
@@ -61,7 +68,9 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
             f"{SMALLEST_M:.0f} to {LARGEST_M:.0f} m make sense"
         )
     if abs(a * e - b * d) < 1e-6 * math.hypot(a, d) * math.hypot(b, e):
-        raise ConfigError("the world file makes a line of the picture")
+        raise ConfigError(
+            coded("world-file-makes-line", "the world file makes a line of the picture")
+        )
     return corners
 
 
@@ -73,7 +82,14 @@ def _grid(crs: str) -> Callable[[float, float], LatLon]:
         return _of_web_maps
     zone = zone_of(crs)
     if zone is None:
-        raise ConfigError(f"{crs} is none of the grids that a world file can be in: {GRIDS}")
+        raise ConfigError(
+            coded(
+                "world-file-grid",
+                "{grid} is none of the grids that a world file can be in: {known}",
+                grid=crs,
+                known=GRIDS,
+            )
+        )
     return lambda x, y: lat_lon_of(zone, x, y)
 
 

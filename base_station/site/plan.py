@@ -25,6 +25,7 @@ import msgspec
 from base_station.site.plan_features import Floor, Metres, read_feature, require_strict
 from base_station.site.plan_pictures import require_pictures
 from base_station.site.storeys import Storey, floor_at, floor_probability
+from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 
 OUTLINE_HYSTERESIS_M = 1.5
@@ -151,23 +152,42 @@ def check_plan(geojson: bytes) -> Plan:
     for number, encoded in enumerate(document.features):
         require_strict(read_feature(number, encoded))
     if not isinstance(document.muster.get("name", ""), str):
-        raise UserError('the plan\'s name must be a string: "name" of its member "muster"')
+        raise UserError(
+            coded("plan-name", 'the plan\'s name must be a string: "name" of its member "muster"')
+        )
     require_pictures(document.muster.get("pictures", []))
     listed = {storey.floor for storey in plan.storeys}
     drawn = {wall.floor for wall in plan.walls} | {one.floor for one in plan.stairs}
     if missing := sorted(drawn - listed):
         raise UserError(
-            f"the plan has walls or stairs on floor {missing[0]}, whose height is missing: "
-            f'"floors" of its member "muster" must list {{"floor": {missing[0]}, "down_m": ...}}'
+            coded(
+                "plan-floor-without-height",
+                "the plan has walls or stairs on floor {floor}, whose height is missing: "
+                '"floors" of its member "muster" must list {{"floor": {floor}, "down_m": '
+                "...}}",
+                floor=missing[0],
+            )
         )
     points = sum(map(len, plan.outlines))
     if points > MOST_OUTLINE_POINTS:
         raise UserError(
-            f"the plan's outlines have {points} points: more than {MOST_OUTLINE_POINTS} are too "
-            "many to look at for every position; draw them with fewer"
+            coded(
+                "plan-outlines-too-fine",
+                "the plan's outlines have {points} points: more than {most} are too many "
+                "to look at for every position; draw them with fewer",
+                points=points,
+                most=MOST_OUTLINE_POINTS,
+            )
         )
     if len(plan.stairs) > MOST_STAIRS:
-        raise UserError(f"the plan has {len(plan.stairs)} stairs: more than {MOST_STAIRS}")
+        raise UserError(
+            coded(
+                "plan-stairs-too-many",
+                "the plan has {stairs} stairs: more than {most}",
+                stairs=len(plan.stairs),
+                most=MOST_STAIRS,
+            )
+        )
     if plan.walls_m > MOST_WALLS_M:
         raise UserError(
             f"the plan's walls are {plan.walls_m / 1000.0:.0f} km long: more than "
@@ -192,15 +212,26 @@ def _document(geojson: bytes) -> _Document:
         msgspec.json.decode(geojson, type=msgspec.Raw)
         document = msgspec.json.decode(geojson, type=_Document)
     except msgspec.ValidationError as error:
-        raise UserError(f"the plan is no GeoJSON FeatureCollection: {error}") from error
+        raise UserError(
+            coded(
+                "plan-no-collection",
+                "the plan is no GeoJSON FeatureCollection: {error}",
+                error=text_of_error(error),
+            )
+        ) from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise UserError(f"the plan is no JSON: {error}") from error
+        raise UserError(
+            coded("plan-no-json", "the plan is no JSON: {error}", error=text_of_error(error))
+        ) from error
     if document.type != "FeatureCollection":
-        raise UserError("the plan is no GeoJSON FeatureCollection")
+        raise UserError(coded("plan-not-geojson", "the plan is no GeoJSON FeatureCollection"))
     if not isinstance(document.muster, dict) or document.muster.get("frame") != "site-m":
         raise UserError(
-            'the plan has no scale: its member "muster" must say {"frame": "site-m", ...}, and '
-            "coordinates must be [east_m, north_m] in metres"
+            coded(
+                "plan-no-scale",
+                'the plan has no scale: its member "muster" must say {{"frame": "site-m", '
+                "...}}, and coordinates must be [east_m, north_m] in metres",
+            )
         )
     return document
 
@@ -226,11 +257,19 @@ def _storeys(site: dict[str, Any]) -> tuple[Storey, ...]:
     try:
         listed = msgspec.convert(site.get("floors", ()), list[_Floor])
     except msgspec.ValidationError as error:
-        raise UserError(f"the plan has a list of floors that cannot be read: {error}") from error
+        raise UserError(
+            coded(
+                "plan-floors-unreadable",
+                "the plan has a list of floors that cannot be read: {error}",
+                error=text_of_error(error),
+            )
+        ) from error
     numbers = Counter(one.floor for one in listed)
     twice = [floor for floor, count in numbers.items() if count > 1]
     if twice:
-        raise UserError(f"the plan lists floor {twice[0]} more than once")
+        raise UserError(
+            coded("plan-floor-twice", "the plan lists floor {floor} more than once", floor=twice[0])
+        )
     lowest_first = sorted(listed, key=lambda one: -one.down_m)
     return tuple(Storey(one.floor, one.down_m) for one in lowest_first)
 

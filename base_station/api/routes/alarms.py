@@ -21,7 +21,7 @@ from base_station.report.alarm_explanation import Crossing
 from base_station.report.contents import Series
 from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
-from shared.coded_text import coded
+from shared.coded_text import coded, text_of_error
 from shared.errors import LogError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
@@ -109,11 +109,18 @@ def explain_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> Alar
             ),
         )
     if station.alarm_explainer is None:
-        raise Problem(503, "This station has no log to read.")
+        raise Problem(503, coded("alarm-no-log", "This station has no log to read."))
     try:
         found = station.alarm_explainer.explain(alarm)
     except LogError as error:
-        raise Problem(503, f"The log cannot be read: {error}.") from error
+        raise Problem(
+            503,
+            coded(
+                "alarm-log-unreadable",
+                "The log cannot be read: {reason}.",
+                reason=text_of_error(error),
+            ),
+        ) from error
     return AlarmExplanationAnswer(
         alarm_id=alarm_id,
         rule=alarm.rule,

@@ -15,6 +15,7 @@ from base_station.api.problems import Problem
 from base_station.api.services import Station
 from base_station.api.uploads import UploadRoute
 from base_station.site.base_map import DEGREES, Corners, corners_of
+from shared.coded_text import coded
 
 router = APIRouter(tags=["site"], route_class=UploadRoute)
 
@@ -61,7 +62,7 @@ def set_base_map(
 @router.delete("/site/base-map", status_code=204)
 def remove_base_map(station: Station, who: Administrator) -> None:
     if not station.base_maps.remove():
-        raise Problem(404, "There is no base map.")
+        raise Problem(404, coded("base-map-none", "There is no base map."))
     station.records.audit(who.username, "RemovedBaseMap", "")
 
 
@@ -71,7 +72,7 @@ def remove_base_map(station: Station, who: Administrator) -> None:
 def get_base_map_image(image_hash: Id, station: Station, _: Viewer) -> Response:
     webp = station.base_maps.image(image_hash)
     if webp is None:
-        raise Problem(404, "There is no such base map.")
+        raise Problem(404, coded("base-map-unknown", "There is no such base map."))
     # The address changes with the picture; only this browser may keep it.
     headers = {"Cache-Control": "private, max-age=86400", "ETag": f'"{image_hash}"'}
     return Response(webp, media_type="image/webp", headers=headers)

@@ -15,6 +15,7 @@ from base_station.api.services import Station
 from base_station.api.uploads import UploadRoute
 from base_station.drawings.draft import LengthUnit, Options
 from base_station.drawings.process import draft_of
+from shared.coded_text import text_of_error
 from shared.errors import UserError
 
 router = APIRouter(tags=["site"], route_class=UploadRoute)
@@ -64,5 +65,5 @@ def draft_plan(
         with station.image_lock:
             draft = draft_of(drawing, options)
     except UserError as error:
-        raise Problem(422, str(error)) from error
+        raise Problem(422, text_of_error(error)) from error
     return PlanDraft.model_validate(msgspec.to_builtins(draft))

@@ -19,7 +19,7 @@ from base_station.security.pki.qr import qr_code, rows_of
 from base_station.views.answer import to_ms
 from shared.channels import validate_unit_id
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import coded, text_of_error
 from shared.enrolment import Holder
 from shared.errors import ConfigError, UserError
 from shared.host_names import is_loopback
@@ -115,7 +115,7 @@ def _as_refusal() -> Iterator[None]:
     try:
         yield
     except ConfigError as error:
-        raise UserError(f"{error}.") from error
+        raise UserError(text_of_error(error)) from error
 
 
 def _ms(at: datetime) -> int:

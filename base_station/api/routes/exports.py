@@ -29,6 +29,7 @@ from base_station.exporters.selection import TrackSelection
 from base_station.replay.incident_file import IncidentFileSource, incident_file
 from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db.window import Window
+from shared.coded_text import coded, text_of_error
 from shared.errors import StoreError, UserError
 
 router = APIRouter(tags=["exports"])
@@ -99,7 +100,13 @@ async def export_whole_incident(
     with the audio of the radio channels.  ``muster base replay FILE`` shows it.
     """
     if radio and (who.role < Role.COMMANDER or not scope_covers(who, ("radio",))):
-        raise Problem(403, "The audio of the radio is for commanders, and tokens with scope radio.")
+        raise Problem(
+            403,
+            coded(
+                "radio-for-commanders",
+                "The audio of the radio is for commanders, and tokens with scope radio.",
+            ),
+        )
     async with station.export_lock:
         content = await run_in_threadpool(_whole, incident_id, station, who, with_radio=radio)
     headers = {"Content-Disposition": f'attachment; filename="{incident_id}.mcap"'}
@@ -112,7 +119,7 @@ def _whole(
 ) -> Iterator[bytes]:
     incident = incident_or_404(station, incident_id)
     if station.log_of is None:
-        raise Problem(503, "This station has no log to make it from.")
+        raise Problem(503, coded("export-no-log", "This station has no log to make it from."))
     until_ns = station.clock.utc_ns()
     source = IncidentFileSource(
         log=station.log_of(incident),
@@ -135,7 +142,14 @@ def _audit(station: Services, who: Principal, what: str) -> None:
     try:
         station.records.audit(who.username, "Exported", what)
     except StoreError as error:
-        raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
+        raise Problem(
+            503,
+            coded(
+                "export-not-audited",
+                "Nothing is given out that the audit cannot say: {reason}.",
+                reason=text_of_error(error),
+            ),
+        ) from error
 
 
 def _begun(
@@ -150,7 +164,7 @@ def _begun(
     try:
         exporter = exporter_of(format_name)
     except UserError as error:
-        raise Problem(404, f"{error}.") from error
+        raise Problem(404, text_of_error(error)) from error
     incident = incident_or_404(station, incident_id)
     _, trails = trails_of(station, incident, kind)
     tracks = incident_tracks(station.records, station.roster, incident, trails)

@@ -15,6 +15,7 @@ from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services, Station
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
 from base_station.views.wire import CommandView
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import Unassign
 
@@ -64,7 +65,13 @@ def forget_person(
     if worn and not confirmation.unassign:
         units = ", ".join(worn)
         raise Problem(
-            409, f"{confirmation.name} wears {units}; unassign that first, or send unassign."
+            409,
+            coded(
+                "erase-wears",
+                "{name} wears {units}; unassign that first, or send unassign.",
+                name=confirmation.name,
+                units=units,
+            ),
         )
     return _progress(_accept(station, who.username, "person", person_id))
 
@@ -79,7 +86,14 @@ def forget_incident(
     name = station.roster.shown(incident.name)
     _require_name(confirmation, {name})
     if incident.closed_ns is None:
-        raise Problem(409, f"The incident {name} is open; close it first.")
+        raise Problem(
+            409,
+            coded(
+                "erase-named-open",
+                "The incident {incident} is open; close it first.",
+                incident=name,
+            ),
+        )
     return _progress(_accept(station, who.username, "incident", incident_id))
 
 
@@ -113,12 +127,22 @@ def _desk(station: Services) -> ErasureQueue:
         raise Problem(409, ONLY_REPLAYS)
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
-        raise Problem(409, f"The incident {incident.name} is open; close it first.")
+        raise Problem(
+            409,
+            coded(
+                "erase-while-open",
+                "The incident {incident} is open; close it first.",
+                incident=incident.name,
+            ),
+        )
     if any(one.text and _is_under_way(one) for one in station.picture().commands):
         raise Problem(
             409,
-            "A message has not reached all to whom it goes, and would not any more: wait until it "
-            "has, or its time is over.",
+            coded(
+                "erase-message-under-way",
+                "A message has not reached all to whom it goes, and would not any more: "
+                "wait until it has, or its time is over.",
+            ),
         )
     station.projection.flush()  # pending records would be stored afterwards
     return station.forgettings
@@ -130,7 +154,9 @@ def _is_under_way(command: CommandView) -> bool:
 
 def _require_name(confirmation: NameConfirmation, names: Collection[str]) -> None:
     if confirmation.name not in names:
-        raise Problem(422, "The name is another: give it exactly as it is shown.")
+        raise Problem(
+            422, coded("erase-name-differs", "The name is another: give it exactly as it is shown.")
+        )
 
 
 def _progress(one: ErasureJob) -> Progress:

@@ -25,14 +25,17 @@ from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import ImportRow, IncidentRow
 from base_station.storage.imports import ImportedContent
 from base_station.views.answer import Answer, to_ms
+from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages.station import RemoveImport
 
 router = APIRouter(tags=["incidents"])
 
-_NO_IMPORT = "Nothing of that id was brought into this incident."
-_NOT_HERE = "The file is not at this station: it was brought in at the other one."
+_NO_IMPORT = coded("import-not-there", "Nothing of that id was brought into this incident.")
+_NOT_HERE = coded(
+    "import-elsewhere", "The file is not at this station: it was brought in at the other one."
+)
 _ROOM_STEP_BYTES = 16 << 20
 _BODY = {"requestBody": {"required": True, "content": {"application/octet-stream": {}}}}
 _MOST_SHIFT_S = 10 * 366 * 86_400.0
@@ -163,7 +166,7 @@ def imported_picture(
     row = _row_or_404(catalogue, incident_id, import_id)
     content = _content_or_404(catalogue, row)
     if content.picture is None:
-        raise Problem(404, "This file is no photograph.")
+        raise Problem(404, coded("import-no-photograph", "This file is no photograph."))
     headers = {"Cache-Control": "private, max-age=86400", "ETag": f'"{import_id}"'}
     return Response(content.picture, media_type="image/jpeg", headers=headers)
 
@@ -193,14 +196,16 @@ def _desk(station: Services, incident: IncidentRow, catalogue: ImportCatalogue) 
     try:
         anchor = require_anchor(station.records, incident)
     except UserError as error:
-        raise Problem(409, f"{error}.") from error
+        raise Problem(409, text_of_error(error)) from error
     return ImportDesk(catalogue, incident, anchor, station.clock.utc_ns())
 
 
 def _anchor(station: Services, incident: IncidentRow) -> Anchor:
     anchor = anchor_of(station.records, incident)
     if anchor is None:
-        raise Problem(409, "The incident's site has no place on the Earth.")
+        raise Problem(
+            409, coded("import-no-place", "The incident's site has no place on the Earth.")
+        )
     return anchor
 
 
@@ -229,11 +234,17 @@ def _bring_in(
     try:
         import_id = desk.bring_in(path, options, lambda action: station.perform(by, action))
     except UserError as error:
-        raise Problem(422, f"{error}.") from error
+        raise Problem(422, text_of_error(error)) from error
     station.projection.flush()
     row = desk.catalogue.entry(options.incident_id, import_id)
     if row is None:
-        raise Problem(503, "The file was brought in, but the database has not taken it yet.")
+        raise Problem(
+            503,
+            coded(
+                "import-not-stored-yet",
+                "The file was brought in, but the database has not taken it yet.",
+            ),
+        )
     return _answer(station, desk.catalogue, row)
 
 

@@ -17,6 +17,7 @@ from base_station.unit_sync.recordings.transfer import TransferRequest
 from base_station.unit_sync.recordings.transfer_queue import Pull, TransferQueue
 from base_station.views.answer import to_ms
 from shared.clock import NS_PER_MS
+from shared.coded_text import coded
 
 router = APIRouter(tags=["recordings"])
 
@@ -53,7 +54,7 @@ def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Re
     """It is pulled behind live data until it is there, also after restarts and lost links."""
     desk = _desk(station)
     if new.unit_id not in station.roster.registered_units():
-        raise Problem(404, f"There is no unit {new.unit_id}.")
+        raise Problem(404, coded("recording-no-unit", "There is no unit {unit}.", unit=new.unit_id))
     pull = desk.add(who.username, TransferRequest(new.unit_id, *_window(station, new)))
     details = f"{new.unit_id} from {pull.wanted.from_ns} to {pull.wanted.to_ns}"
     station.records.audit(who.username, "FetchedRecording", details)
@@ -64,7 +65,7 @@ def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Re
 def stop_recording(fetch_id: Id, station: Station, who: Commander) -> None:
     """Stop a pull; the received part is kept."""
     if not _desk(station).stop(fetch_id):
-        raise Problem(404, "There is no such recording being pulled.")
+        raise Problem(404, coded("recording-gone", "There is no such recording being pulled."))
     station.records.audit(who.username, "StoppedRecording", fetch_id)
 
 
@@ -81,7 +82,9 @@ def _window(station: Services, new: NewPull) -> tuple[int, int]:
 
 def _desk(station: Services) -> TransferQueue:
     if station.recordings is None:
-        raise Problem(404, "A station that only replays has no units to ask.")
+        raise Problem(
+            404, coded("recording-replays-only", "A station that only replays has no units to ask.")
+        )
     return station.recordings
 
 

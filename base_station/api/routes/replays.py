@@ -24,10 +24,11 @@ from base_station.api.services import Services, Station
 from base_station.replay.session import FASTEST, SLOWEST
 from base_station.views.wire import ReplayView
 from shared.clock import NS_PER_MS
+from shared.coded_text import coded
 
 router = APIRouter(tags=["replays"])
 
-_NO_REPLAY = "There is no such replay; it may have ended."
+_NO_REPLAY = coded("replay-gone", "There is no such replay; it may have ended.")
 Speed = Annotated[float, Field(ge=SLOWEST, le=FASTEST)]
 
 
@@ -73,7 +74,14 @@ def get_replay(replay_id: Id, station: Station, _: Viewer) -> Replay:
 def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Viewer) -> None:
     replay = _replay_or_404(station, replay_id)
     if replay.begun_by and not _is_own(replay, who):
-        raise Problem(403, f"This replay is {replay.begun_by}'s; begin one of your own.")
+        raise Problem(
+            403,
+            coded(
+                "replay-of-another",
+                "This replay is {by}'s; begin one of your own.",
+                by=replay.begun_by,
+            ),
+        )
     player = replay.player
     if change.at_ms is not None:
         player.seek(change.at_ms * NS_PER_MS)
@@ -88,10 +96,22 @@ def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
     """End one's own; a commander may end all but the one that a station was started for."""
     replay = _replay_or_404(station, replay_id)
     if replay.persistent:
-        raise Problem(403, "This replay is for all; it ends with the command that shows it.")
+        raise Problem(
+            403,
+            coded(
+                "replay-for-all", "This replay is for all; it ends with the command that shows it."
+            ),
+        )
     if not _is_own(replay, who):
         if who.role < Role.COMMANDER:
-            raise Problem(403, f"This replay is {replay.begun_by}'s; a commander may end it.")
+            raise Problem(
+                403,
+                coded(
+                    "replay-ended-by-commander",
+                    "This replay is {by}'s; a commander may end it.",
+                    by=replay.begun_by,
+                ),
+            )
         details = f"{replay.player.view().incident_id} of {replay.begun_by}"
         station.records.audit(who.username, "EndedReplay", details)
     if not station.replays.close(replay_id):

@@ -13,6 +13,7 @@ from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services
+from shared.coded_text import coded, text_of_error
 from shared.errors import StoreError
 
 router = APIRouter(tags=["exports"])
@@ -45,12 +46,21 @@ async def report_as_pdf(incident_id: Id, station: CurrentStation, who: Viewer) -
 def _report(incident_id: str, station: Services, who: Principal, *, as_pdf: bool) -> Response:
     incident = incident_or_404(station, incident_id)
     if station.reports is None:
-        raise Problem(503, f"Make it with the terminal: muster base report {incident_id}.")
+        raise Problem(
+            503,
+            coded(
+                "report-by-terminal",
+                "Make it with the terminal: muster base report {incident}.",
+                incident=incident_id,
+            ),
+        )
     suffix, media_type = ("pdf", _PDF) if as_pdf else ("html", _HTML)
     try:
         content = station.reports.make(incident, as_pdf=as_pdf)
         station.records.audit(who.username, "Exported", f"{incident_id} as report, {suffix}")
     except StoreError as error:
-        raise Problem(503, f"There is no report: {error}.") from error
+        raise Problem(
+            503, coded("report-none", "There is no report: {reason}.", reason=text_of_error(error))
+        ) from error
     headers = {"Content-Disposition": f'attachment; filename="{incident_id}-report.{suffix}"'}
     return Response(content, media_type=media_type, headers=headers)

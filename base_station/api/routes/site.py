@@ -21,6 +21,7 @@ from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.views.station import anchor_view
 from base_station.views.wire import AnchorView
+from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 
@@ -76,7 +77,7 @@ def get_plan(station: CurrentStation, _: Viewer, incident_id: Id | None = None) 
     """The plan of an incident's site, or of the station's own."""
     geojson = station.records.plan(site_id=_site_id(station, incident_id))
     if geojson is None:
-        raise Problem(404, "There is no plan.")
+        raise Problem(404, coded("plan-none", "There is no plan."))
     return Response(geojson, media_type="application/geo+json")
 
 
@@ -99,7 +100,7 @@ def set_plan(
     try:
         station.plans.check(plan)
     except UserError as error:
-        raise Problem(422, str(error)) from error
+        raise Problem(422, text_of_error(error)) from error
     perform(SetPlan(plan, named))
 
 

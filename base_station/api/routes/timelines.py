@@ -18,6 +18,7 @@ from base_station.replay.timelines.unit_timeline import MAX_SPAN_NS, TimelineReq
 from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_MS
+from shared.coded_text import coded, text_of_error
 from shared.errors import LogError, StoreError
 from shared.messages import Activity
 
@@ -69,13 +70,23 @@ async def unit_timeline(
 def _timeline(station: Services, request: TimelineRequest) -> Response:
     window = request.window
     if station.roster.unit(request.unit_id) is None:
-        raise Problem(404, f"There is no unit {request.unit_id}, registered or linked.")
+        raise Problem(
+            404,
+            coded(
+                "timeline-no-unit",
+                "There is no unit {unit}, registered or linked.",
+                unit=request.unit_id,
+            ),
+        )
     if station.read_timeline is None:
-        raise Problem(503, "This station has no log to read it from.")
+        raise Problem(503, coded("timeline-no-log", "This station has no log to read it from."))
     try:
         timeline = station.read_timeline(request)
     except (LogError, StoreError) as error:
-        raise Problem(503, f"There is no timeline: {error}.") from error
+        raise Problem(
+            503,
+            coded("timeline-none", "There is no timeline: {reason}.", reason=text_of_error(error)),
+        ) from error
     answer = TimelineAnswer(
         unit_id=request.unit_id,
         from_ms=to_ms(window.from_ns),

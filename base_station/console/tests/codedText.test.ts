@@ -70,7 +70,7 @@ describe("a refusal of the station", () => {
 
   test("is composed in the chosen language from code and parameters", async () => {
     await show("de");
-    expect(refusalText(WRONG)).toMatch(/^Der Ort ist 1\.200 m vom Gebäude des Plans entfernt; höchstens 500 m/);
+    expect(refusalText(WRONG)).toMatch(/^Der Ort ist 1\.200.m vom Gebäude des Plans entfernt; höchstens 500.m sind/);
     expect(refusalText({ detail: "Name or password is wrong.", code: "login-wrong", parameters: {} })).toBe(
       "Name oder Passwort ist falsch.",
     );

@@ -12,6 +12,7 @@ from base_station.storage.job_queue import JobQueue
 from base_station.unit_sync.recordings.transfer import Ask, Transfer, TransferRequest, TransferState
 from base_station.views.wire import RecordingView
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import MusterError, StoreError, UserError
 from shared.own_files import make_folder
 from shared.worker import UNTIL_WOKEN
@@ -60,7 +61,11 @@ class TransferQueue:
         Raises UserError where that makes no sense, StoreError where the disk takes nothing.
         """
         if wanted.to_ns <= wanted.from_ns:
-            raise UserError("the window ends before it begins; turn the two times round")
+            raise UserError(
+                coded(
+                    "recording-window", "the window ends before it begins; turn the two times round"
+                )
+            )
         try:
             make_folder(self._folder)
         except OSError as error:
@@ -146,8 +151,18 @@ class TransferQueue:
 def _new_pull(by: str, wanted: TransferRequest, under_way: list[Pull]) -> Pull:
     if any(one.wanted.unit_id == wanted.unit_id for one in under_way):
         raise UserError(
-            f"a recording of {wanted.unit_id} is being pulled already; wait for it, or stop it"
+            coded(
+                "recording-under-way",
+                "a recording of {unit} is being pulled already; wait for it, or stop it",
+                unit=wanted.unit_id,
+            )
         )
     if len(under_way) >= _MOST:
-        raise UserError(f"{_MOST} recordings are being pulled; wait for one, or stop one")
+        raise UserError(
+            coded(
+                "recordings-too-many",
+                "{most} recordings are being pulled; wait for one, or stop one",
+                most=_MOST,
+            )
+        )
     return Pull(secrets.token_hex(4), by, wanted)

@@ -27,7 +27,7 @@ export const refusal_access: Part<"refusal_access"> = {
   "password-wrong":
     "Das alte Passwort ist falsch.",
   "role-too-low":
-    "Dazu ist die Rolle {needed, select, viewer {Betrachter} commander {Einsatzleiter} other {Administrator}} nötig; {user} ist {role, select, viewer {Betrachter} commander {Einsatzleiter} other {Administrator}}.",
+    "Dazu ist die Rolle {needed, select, viewer {Beobachter} commander {Einsatzleiter} other {Administrator}} nötig; {user} ist {role, select, viewer {Beobachter} commander {Einsatzleiter} other {Administrator}}.",
   "role-unknown":
     "Eine Rolle {role} gibt es nicht; Rollen sind {known}",
   "sample-unit-unknown":
@@ -39,27 +39,27 @@ export const refusal_access: Part<"refusal_access"> = {
   "ticket-void":
     "Diese Übergabe der Anmeldung gilt nicht oder nicht mehr; melden Sie sich an.",
   "token-above-own-role":
-    "Sie sind {role, select, viewer {Betrachter} commander {Einsatzleiter} other {Administrator}}; ein Token von Ihnen kann nicht {wanted, select, viewer {Betrachter} commander {Einsatzleiter} other {Administrator}} sein.",
+    "Sie sind {role, select, viewer {Beobachter} commander {Einsatzleiter} other {Administrator}}; ein Token von Ihnen kann nicht {wanted, select, viewer {Beobachter} commander {Einsatzleiter} other {Administrator}} sein.",
   "token-beyond-own-scope":
-    "Ein Token erstellt nur Tokens für das, wofür es selbst gilt.",
+    "Ein Token erzeugt nur Tokens für das, wofür er selbst gilt.",
   "token-maker-unknown":
     "Einen Benutzer {user} gibt es nicht",
   "token-not-yours":
-    "Sie haben kein solches Token.",
+    "Sie haben keinen solchen Token.",
   "token-outlasts":
-    "Ein Token erstellt keines, das länger gilt als es selbst; geben Sie weniger Tage an.",
+    "Ein Token erzeugt keinen, der länger gilt als er selbst; geben Sie weniger Tage an.",
   "token-role-too-high":
     "Ein Token kann die Rolle seines Besitzers oder eine niedrigere haben, keine höhere",
   "token-scope":
-    "Dieses Token gilt für {allowed}, nicht für {wanted}.",
+    "Dieser Token gilt für {allowed}, nicht für {wanted}.",
   "tokens-too-many":
-    "{user} hat {most} Tokens; entfernen Sie eines, das nicht verwendet wird",
+    "{user} hat {most} Tokens; entfernen Sie einen, der nicht verwendet wird",
   "unit-token-of-another":
-    "Dieses Token gilt für Messwerte von {unit}, nicht von {wanted}.",
+    "Dieser Token gilt für Messwerte von {unit}, nicht von {wanted}.",
   "unit-token-unknown":
-    "{unit} hat kein solches Token.",
+    "{unit} hat keinen solchen Token.",
   "unit-tokens-too-many":
-    "{unit} hat {most} Tokens; entfernen Sie zuerst eines davon",
+    "{unit} hat {most} Tokens; entfernen Sie zuerst einen davon",
   "user-there":
     "Einen Benutzer {username} gibt es schon",
   "user-unknown":

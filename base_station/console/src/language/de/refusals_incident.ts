@@ -13,7 +13,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "alarm-unknown":
     "Diesen Alarm gibt es nicht.",
   "all-clear-names-none":
-    "Eine Entwarnung beendet eine Räumung: Nennen Sie diese",
+    "„Räumung aufgehoben“ beendet eine Räumung: Nennen Sie diese",
   "anchor-no-place":
     "{lat_deg}, {lon_deg} ist keine geografische Breite und Länge",
   "beacon-gone":
@@ -29,7 +29,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "check-in-nobody":
     "Von {recipients, select, everyone {allen} other {{recipients}}} ist niemand in einem offenen Einsatz im Dienst",
   "command-acknowledged":
-    "{by} hat ihn schon quittiert",
+    "{by} hat ihn schon bestätigt",
   "command-addressee":
     "Nennen Sie eines davon: ein Gerät, einen Trupp oder ein Geschoss mit Personen, alle",
   "command-id-taken":
@@ -55,11 +55,11 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "commands-too-many":
     "{most} Befehle sind offen; warten Sie, bis einige beantwortet sind",
   "dispatch-not-listed":
-    "Es gibt keine Alarmierung {number}.",
+    "Es gibt keinen Einsatzauftrag {number}.",
   "dispatch-opened":
-    "Aus der Alarmierung {number} wurde der Einsatz „{incident}“ schon eröffnet",
+    "Aus dem Einsatzauftrag {number} wurde der Einsatz „{incident}“ schon eröffnet",
   "dispatch-unknown":
-    "Es gibt keine Alarmierung {number}, aus der kein Einsatz eröffnet wurde",
+    "Es gibt keinen Einsatzauftrag {number}, aus dem kein Einsatz eröffnet wurde",
   "evacuation-ordered-anew":
     "Alle davon wurden seither erneut hinausbefohlen: Beenden Sie jene Räumung",
   "evacuation-over":
@@ -117,7 +117,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "order-unknown":
     "Es gibt keinen Befehl {command}, der erneut zu senden wäre",
   "pin-gone":
-    "Es gibt keine Markierung {pin}; sie wurde vielleicht schon entfernt",
+    "Es gibt keinen Pin {pin}; er wurde vielleicht schon entfernt",
   "pin-incidents-differ":
     "Diese Geräte sind in verschiedenen Einsätzen: Sie haben keinen gemeinsamen Ort",
   "pin-meets-itself":
@@ -125,15 +125,15 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "pin-no-unit":
     "Kein Gerät zu setzen: Nennen Sie mindestens eines",
   "pin-of-another-kind":
-    "Diese Markierung ist von anderer Art ({kind}); entfernen Sie sie, und setzen Sie eine andere.",
+    "Dieser Pin ist von anderer Art ({kind}); entfernen Sie ihn, und setzen Sie einen anderen.",
   "pin-unknown":
-    "Diese Markierung gibt es nicht.",
+    "Diesen Pin gibt es nicht.",
   "pins-too-many":
-    "Es ist Platz für {most} Markierungen, nicht für {wanted}; entfernen Sie zuerst einige",
+    "Es ist Platz für {most} Pins, nicht für {wanted}; entfernen Sie zuerst einige",
   "place-no-numbers":
     "Der Ort ist kein Zahlenpaar",
   "place-too-far":
-    "Der Ort ist {away_m, number, ::.} m vom Gebäude des Plans entfernt; höchstens {most_m} m sind sinnvoll",
+    "Der Ort ist {away_m} vom Gebäude des Plans entfernt; höchstens {most_m} sind sinnvoll",
   "position-rate-not-finite":
     "Diese Positionsrate ist keine endliche Zahl",
   "rescuer-is-member":
@@ -143,7 +143,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "start-uncertainty-negative":
     "Ein Start braucht Unsicherheiten, die nicht negativ sind",
   "uncertainty-unfit":
-    "Eine Unsicherheit von {std_m} m lässt sich nicht gewichten; geben Sie an, um wie viele Meter der Ort falsch sein kann, mehr als 0",
+    "Eine Unsicherheit von {std_m} lässt sich nicht gewichten; geben Sie an, um wie viele Meter der Ort falsch sein kann, mehr als 0",
   "unit-unknown":
     "Dieses Gerät gibt es nicht.",
   "unit-without-position":

@@ -3,7 +3,7 @@ import type { Part } from "../catalogue";
 
 export const refusal_people: Part<"refusal_people"> = {
   "authority-elsewhere":
-    "Der Schlüssel der Zertifizierungsstelle ist nur an der ersten Station; enrolen und erneuern Sie dort",
+    "Der Schlüssel der Zertifizierungsstelle ist nur an der ersten Station; melden Sie dort an, und erneuern Sie dort",
   "csv-columns-alike":
     "Zeile {line} der Datei hat zwei Spalten mit derselben Bedeutung: {first} und {second}; entfernen Sie eine",
   "csv-empty":
@@ -19,9 +19,9 @@ export const refusal_people: Part<"refusal_people"> = {
   "csv-too-many":
     "Die Datei hat mehr als {most} Personen; senden Sie die, die zu einem Einsatz kommen können, oder mehrere Dateien",
   "enrolment-not-private":
-    "Ein Enrolment enthält einen privaten Schlüssel, den andere im Netz auf dem Weg zu Ihnen lesen könnten: Bieten Sie die Konsole über TLS an, oder enrolen Sie am Rechner der Station.",
+    "Eine Anmeldung enthält einen privaten Schlüssel, den andere im Netz auf dem Weg zu Ihnen lesen könnten: Bieten Sie die Konsole über TLS an, oder melden Sie das Gerät am Rechner der Station an.",
   "enrols-none":
-    "Diese Station enrolt jetzt keine Geräte: Sie gibt nur wieder oder startet noch.",
+    "Diese Station meldet jetzt keine Geräte an: Sie gibt nur wieder oder startet noch.",
   "members-none-named":
     "Kein Gerät zuzuordnen: Nennen Sie mindestens eines",
   "members-without-units":
@@ -29,7 +29,7 @@ export const refusal_people: Part<"refusal_people"> = {
   "name-of-two":
     "{name} ist hier der Name von zwei Personen",
   "no-authority":
-    "Diese Station hat keine Zertifizierungsstelle, sodass kein Gerät enrolt werden kann: Erstellen Sie eine mit „muster pki init“, und lassen Sie den Bus auf tls/ hören.",
+    "Diese Station hat keine Zertifizierungsstelle, sodass kein Gerät angemeldet werden kann: Erstellen Sie eine mit „muster pki init“, und lassen Sie den Bus auf tls/ hören.",
   "not-a-member":
     "{unit} ist nicht im Einsatz {incident}.",
   "people-faulty":
@@ -45,7 +45,7 @@ export const refusal_people: Part<"refusal_people"> = {
   "photo-unreadable":
     "Das Foto ist nicht lesbar; senden Sie eine Datei im Format JPEG, PNG oder WebP",
   "still-enrolled":
-    "{holder} {name} ist bis {until} enrolt; erneuern Sie das Zertifikat, oder sperren Sie es, wenn es verloren ist",
+    "{holder} {name} ist bis {until} angemeldet; erneuern Sie das Zertifikat, oder sperren Sie es, wenn es verloren ist",
   "unit-not-listed":
     "Ein registriertes Gerät {unit} gibt es nicht.",
   "unit-not-registered":

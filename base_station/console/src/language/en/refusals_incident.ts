@@ -131,7 +131,7 @@ export const refusal_incident = {
   "place-no-numbers":
     "the place is no pair of numbers",
   "place-too-far":
-    "the place is {away_m, number, ::.} m from the plan’s building; at most {most_m} m make sense",
+    "the place is {away_m} from the plan’s building; at most {most_m} make sense",
   "position-rate-not-finite":
     "a position rate is no finite number",
   "rescuer-is-member":
@@ -141,7 +141,7 @@ export const refusal_incident = {
   "start-uncertainty-negative":
     "a start needs uncertainties that are not negative",
   "uncertainty-unfit":
-    "an uncertainty of {std_m} m cannot be weighed; say how many metres it may be off, more than 0",
+    "an uncertainty of {std_m} cannot be weighed; say how many metres it may be off, more than 0",
   "unit-unknown":
     "There is no such unit.",
   "unit-without-position":

@@ -1,3 +1,107 @@
 /** Refusals about imports, replays, reports, exports and erasure, by their codes. */
 export const refusal_past = {
+  "alarm-log-unreadable":
+    "The log cannot be read: {reason}.",
+  "alarm-no-log":
+    "This station has no log to read.",
+  "erase-message-under-way":
+    "A message has not reached all to whom it goes, and would not any more: wait until it has, or its time is over.",
+  "erase-name-differs":
+    "The name is another: give it exactly as it is shown.",
+  "erase-named-open":
+    "The incident {incident} is open; close it first.",
+  "erase-wears":
+    "{name} wears {units}; unassign that first, or send unassign.",
+  "erase-while-open":
+    "The incident {incident} is open; close it first.",
+  "export-no-anchor":
+    "the site has no place on the Earth, so this format cannot be written: set the anchor, or export as csv",
+  "export-no-log":
+    "This station has no log to make it from.",
+  "export-no-track":
+    "none of the selected people and units has a track in that time",
+  "export-not-audited":
+    "Nothing is given out that the audit cannot say: {reason}.",
+  "import-elsewhere":
+    "The file is not at this station: it was brought in at the other one.",
+  "import-heic":
+    "pictures as HEIC are not read: save it as JPEG, with its Exif data",
+  "import-no-anchor":
+    "the incident’s site has no place on the Earth, so nothing from elsewhere can be put on its plan: set the anchor first (Site in the console)",
+  "import-no-photograph":
+    "This file is no photograph.",
+  "import-no-place":
+    "The incident’s site has no place on the Earth.",
+  "import-not-of-muster":
+    "nothing in it is of Muster, or nothing can be read: {how}",
+  "import-not-stored-yet":
+    "The file was brought in, but the database has not taken it yet.",
+  "import-not-there":
+    "Nothing of that id was brought into this incident.",
+  "import-part-of-log":
+    "it is a part of a station’s log, not an incident that stands alone: {how}",
+  "import-points-too-many":
+    "it has more than {most} points, one a second: cut it by time",
+  "import-refused":
+    "{file} was not brought in: {reason}",
+  "import-same-incident":
+    "it is this very incident, as this station recorded it",
+  "import-too-large":
+    "it has {size_mb}, and at most {most_mb} are taken",
+  "import-took-too-long":
+    "it took too long to be read: take a part of it",
+  "import-tracks-too-many":
+    "it has more than {most} tracks: take a part of it",
+  "import-unit-recording":
+    "it is a recording of a unit, and no incident: track it with muster edge, or {how}",
+  "import-unknown":
+    "it is nothing that can be brought in: take a GPX or KML track, a JPEG, PNG, TIFF or WebP photograph, or an incident of another station (MCAP)",
+  "import-unreadable":
+    "it cannot be read: it may be damaged; save it again, and bring that in",
+  "photo-import-no-place":
+    "it has no place in its Exif data: the camera had no fix, or the place was taken out on the way; take the original file",
+  "photo-import-no-time":
+    "its Exif data do not say when it was taken",
+  "photo-import-too-large":
+    "it has too many pixels; save it smaller, with its Exif data",
+  "photo-import-unreadable":
+    "it is no picture that can be read: {error}",
+  "radio-for-commanders":
+    "The audio of the radio is for commanders, and tokens with scope radio.",
+  "recording-gone":
+    "There is no such recording being pulled.",
+  "recording-no-unit":
+    "There is no unit {unit}.",
+  "recording-replays-only":
+    "A station that only replays has no units to ask.",
+  "recording-under-way":
+    "a recording of {unit} is being pulled already; wait for it, or stop it",
+  "recording-window":
+    "the window ends before it begins; turn the two times round",
+  "recordings-too-many":
+    "{most} recordings are being pulled; wait for one, or stop one",
+  "replay-ended-by-commander":
+    "This replay is {by}’s; a commander may end it.",
+  "replay-for-all":
+    "This replay is for all; it ends with the command that shows it.",
+  "replay-gone":
+    "There is no such replay; it may have ended.",
+  "replay-of-another":
+    "This replay is {by}’s; begin one of your own.",
+  "replay-speed":
+    "a replay runs at {slowest} to {fastest} times real time, not {speed}",
+  "replays-too-many":
+    "{most} replays are open already; end one of them",
+  "report-by-terminal":
+    "Make it with the terminal: muster base report {incident}.",
+  "report-library-missing":
+    "the library weasyprint, which writes PDF, is not installed: pip install --require-hashes -r deploy/requirements-report.lock; or print the HTML report in a browser",
+  "report-none":
+    "There is no report: {reason}.",
+  "timeline-no-log":
+    "This station has no log to read it from.",
+  "timeline-no-unit":
+    "There is no unit {unit}, registered or linked.",
+  "timeline-none":
+    "There is no timeline: {reason}.",
 };

@@ -13,7 +13,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "alarm-unknown":
     "Cette alarme n’existe pas.",
   "all-clear-names-none":
-    "Une fin d’alerte termine une évacuation\u00a0: nommez-la",
+    "Une fin d’évacuation en termine une\u00a0: nommez-la",
   "anchor-no-place":
     "{lat_deg}, {lon_deg} n’est pas une latitude et une longitude",
   "beacon-gone":
@@ -29,7 +29,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "check-in-nobody":
     "Personne parmi {recipients, select, everyone {tous} other {{recipients}}} n’est en service dans une intervention en cours",
   "command-acknowledged":
-    "{by} l’a déjà acquitté",
+    "{by} l’a déjà confirmé",
   "command-addressee":
     "Indiquez l’un d’eux\u00a0: un boîtier, une équipe ou un étage qui a des membres, tous",
   "command-id-taken":
@@ -55,11 +55,11 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "commands-too-many":
     "{most} ordres sont ouverts\u00a0; attendez que certains aient une réponse",
   "dispatch-not-listed":
-    "Il n’y a pas d’alerte {number}.",
+    "Il n’y a pas de départ {number}.",
   "dispatch-opened":
-    "L’alerte {number} a déjà ouvert l’intervention «\u00a0{incident}\u00a0»",
+    "Le départ {number} a déjà ouvert l’intervention «\u00a0{incident}\u00a0»",
   "dispatch-unknown":
-    "Il n’y a pas d’alerte {number} dont aucune intervention n’a été ouverte",
+    "Il n’y a pas de départ {number} dont aucune intervention n’a été ouverte",
   "evacuation-ordered-anew":
     "Tous ont reçu depuis un nouvel ordre de sortir\u00a0: terminez cette évacuation-là",
   "evacuation-over":
@@ -133,7 +133,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "place-no-numbers":
     "Le lieu n’est pas une paire de nombres",
   "place-too-far":
-    "Le lieu est à {away_m, number,\u00a0::.} m du bâtiment du plan\u00a0; au plus {most_m} m ont un sens",
+    "Le lieu est à {away_m} du bâtiment du plan\u00a0; au plus {most_m} ont un sens",
   "position-rate-not-finite":
     "Cette fréquence de positions n’est pas un nombre fini",
   "rescuer-is-member":
@@ -143,7 +143,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "start-uncertainty-negative":
     "Un départ a besoin d’incertitudes qui ne sont pas négatives",
   "uncertainty-unfit":
-    "Une incertitude de {std_m} m ne peut pas être pondérée\u00a0; dites de combien de mètres le lieu peut être faux, plus de 0",
+    "Une incertitude de {std_m} ne peut pas être pondérée\u00a0; dites de combien de mètres le lieu peut être faux, plus de 0",
   "unit-unknown":
     "Ce boîtier n’existe pas.",
   "unit-without-position":

@@ -2,4 +2,108 @@
 import type { Part } from "../catalogue";
 
 export const refusal_past: Part<"refusal_past"> = {
+  "alarm-log-unreadable":
+    "Le journal est illisible\u00a0: {reason}.",
+  "alarm-no-log":
+    "Cette station n’a pas de journal à lire.",
+  "erase-message-under-way":
+    "Un message n’a pas atteint tous ses destinataires, et ne le ferait plus\u00a0: attendez qu’il l’ait fait, ou que son temps soit passé.",
+  "erase-name-differs":
+    "Le nom est différent\u00a0: donnez-le exactement comme il est montré.",
+  "erase-named-open":
+    "L’intervention {incident} est en cours\u00a0; clôturez-la d’abord.",
+  "erase-wears":
+    "{name} porte {units}\u00a0; retirez-les d’abord, ou envoyez unassign.",
+  "erase-while-open":
+    "L’intervention {incident} est en cours\u00a0; clôturez-la d’abord.",
+  "export-no-anchor":
+    "Le site n’a pas de place sur la Terre, et ce format ne peut pas être écrit\u00a0: placez l’ancre, ou exportez en CSV",
+  "export-no-log":
+    "Cette station n’a pas de journal pour le faire.",
+  "export-no-track":
+    "Aucune des personnes et aucun des boîtiers choisis n’a de trace dans ce temps",
+  "export-not-audited":
+    "Rien n’est remis que le journal d’audit ne puisse noter\u00a0: {reason}.",
+  "import-elsewhere":
+    "Le fichier n’est pas à cette station\u00a0: il a été versé à l’autre.",
+  "import-heic":
+    "Les images HEIC ne sont pas lues\u00a0: enregistrez-la en JPEG, avec ses données Exif",
+  "import-no-anchor":
+    "Le site de l’intervention n’a pas de place sur la Terre, et rien d’ailleurs ne peut être mis sur son plan\u00a0: placez d’abord l’ancre (Site dans la console)",
+  "import-no-photograph":
+    "Ce fichier n’est pas une photo.",
+  "import-no-place":
+    "Le site de l’intervention n’a pas de place sur la Terre.",
+  "import-not-of-muster":
+    "Rien n’y est de Muster, ou rien n’est lisible\u00a0: {how}",
+  "import-not-stored-yet":
+    "Le fichier a été versé, mais la base de données ne l’a pas encore pris.",
+  "import-not-there":
+    "Rien de cet identifiant n’a été versé dans cette intervention.",
+  "import-part-of-log":
+    "C’est une partie du journal d’une station, pas une intervention à elle seule\u00a0: {how}",
+  "import-points-too-many":
+    "Le fichier a plus de {most} points, un par seconde\u00a0: coupez-le selon le temps",
+  "import-refused":
+    "{file} n’a pas été versé\u00a0: {reason}",
+  "import-same-incident":
+    "C’est cette intervention même, telle que cette station l’a enregistrée",
+  "import-too-large":
+    "Le fichier a {size_mb}, et au plus {most_mb} sont acceptés",
+  "import-took-too-long":
+    "La lecture du fichier a pris trop de temps\u00a0: prenez-en une partie",
+  "import-tracks-too-many":
+    "Le fichier a plus de {most} traces\u00a0: prenez-en une partie",
+  "import-unit-recording":
+    "C’est l’enregistrement d’un boîtier, pas une intervention\u00a0: suivez-le avec «\u00a0muster edge\u00a0», ou {how}",
+  "import-unknown":
+    "Cela ne peut pas être versé\u00a0: prenez une trace GPX ou KML, une photo JPEG, PNG, TIFF ou WebP, ou une intervention d’une autre station (MCAP)",
+  "import-unreadable":
+    "Le fichier est illisible, peut-être endommagé\u00a0; enregistrez-le de nouveau, et versez cela",
+  "photo-import-no-place":
+    "La photo n’a pas de lieu dans ses données Exif\u00a0: l’appareil n’avait pas de position, ou le lieu a été retiré en chemin\u00a0; prenez le fichier d’origine",
+  "photo-import-no-time":
+    "Les données Exif de la photo ne disent pas quand elle a été prise",
+  "photo-import-too-large":
+    "L’image a trop de pixels\u00a0; enregistrez-la plus petite, avec ses données Exif",
+  "photo-import-unreadable":
+    "Ce n’est pas une image lisible\u00a0: {error}",
+  "radio-for-commanders":
+    "L’audio de la radio est pour les commandants, et les jetons avec le domaine «\u00a0radio\u00a0».",
+  "recording-gone":
+    "Aucun enregistrement de ce genre n’est en cours de transfert.",
+  "recording-no-unit":
+    "Il n’y a pas de boîtier {unit}.",
+  "recording-replays-only":
+    "Une station qui ne fait que relire n’a pas de boîtiers à interroger.",
+  "recording-under-way":
+    "Un enregistrement de {unit} est déjà en transfert\u00a0; attendez-le, ou arrêtez-le",
+  "recording-window":
+    "La période finit avant de commencer\u00a0; inversez les deux heures",
+  "recordings-too-many":
+    "{most} enregistrements sont en transfert\u00a0; attendez-en un, ou arrêtez-en un",
+  "replay-ended-by-commander":
+    "Cette relecture est celle de {by}\u00a0; un commandant peut la terminer.",
+  "replay-for-all":
+    "Cette relecture est pour tous\u00a0; elle se termine avec la commande qui la montre.",
+  "replay-gone":
+    "Cette relecture n’existe pas\u00a0; elle est peut-être terminée.",
+  "replay-of-another":
+    "Cette relecture est celle de {by}\u00a0; commencez la vôtre.",
+  "replay-speed":
+    "Une relecture va de {slowest} à {fastest} fois le temps réel, et non {speed}",
+  "replays-too-many":
+    "{most} relectures sont déjà ouvertes\u00a0; terminez-en une",
+  "report-by-terminal":
+    "Faites-le en ligne de commande\u00a0: muster base report {incident}.",
+  "report-library-missing":
+    "La bibliothèque weasyprint, qui écrit le PDF, n’est pas installée\u00a0: pip install --require-hashes -r deploy/requirements-report.lock\u00a0; ou imprimez le rapport HTML dans un navigateur",
+  "report-none":
+    "Il n’y a pas de rapport\u00a0: {reason}.",
+  "timeline-no-log":
+    "Cette station n’a pas de journal pour la lire.",
+  "timeline-no-unit":
+    "Il n’y a pas de boîtier {unit}, ni enregistré ni relié.",
+  "timeline-none":
+    "Il n’y a pas de chronologie\u00a0: {reason}.",
 };
