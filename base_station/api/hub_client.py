@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from base_station.views.changes import merged_messages
 
-MAX_QUEUED = 64  # deltas a client may be behind, some six seconds
+MAX_QUEUED = 128  # deltas a client may be behind, some six seconds
 MAX_UNSHOWN = 1  # snapshots and deltas: the next one has all changes since
 MAX_UNSHOWN_BYTES = 1 << 18  # trails go out while no more than that is not shown yet
 

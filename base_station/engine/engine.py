@@ -18,6 +18,7 @@ import msgspec
 
 from base_station.core.commands import command_tracker
 from base_station.core.pipeline import StationPipeline
+from base_station.engine import delta_pace
 from base_station.engine.action_queue import ActionQueue
 from base_station.engine.admission import Admission, classify, mark_missing
 from base_station.engine.checkpoint_writer import CheckpointWriter
@@ -51,9 +52,6 @@ TICK_NS = NS_PER_S
 SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
 STALLED_NS = 5 * NS_PER_S  # between two turns: the machine did not let the station run
 RECEIVE_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
-DELTA_NS = NS_PER_S // 10  # twice as often as units send positions
-URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
-DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
 CHECKPOINT_NS = 15 * NS_PER_S  # that a restart steps at most; at 1,000 events/s a second's work
 CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
 REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
@@ -83,6 +81,7 @@ class _Due:
     tick_ns: int
     sooner_tick_ns: int  # where there are changes
     delta_ns: int
+    urgent_delta_ns: int  # with alarms or commands
     checkpoint_ns: int
 
 
@@ -119,7 +118,7 @@ class StationEngine:
             daemon=False,
         )
         now_ns = self._last_run_ns = ports.clock.monotonic_ns()
-        self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
+        self._due = _Due(now_ns, now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
         self._health_due = False  # the next delta carries the station's health
@@ -239,13 +238,14 @@ class StationEngine:
             spent_ns = clock.monotonic_ns() - now_ns
             due.checkpoint_ns = now_ns + max(CHECKPOINT_NS, spent_ns * CHECKPOINTS_SHARE)
         self._flush_urgent()
-        sooner_ns = URGENT_SOONER_NS if self._publisher.is_urgent else 0
-        if now_ns >= due.delta_ns - sooner_ns:
-            due.delta_ns = now_ns + DELTA_NS  # where it cannot be published, too
+        if now_ns >= (due.urgent_delta_ns if self._publisher.is_urgent else due.delta_ns):
             before_ns = time.thread_time_ns()
-            self._publish()
-            spent_ns = time.thread_time_ns() - before_ns
-            due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
+            try:
+                self._publish()
+            finally:  # where it cannot be published, too
+                interval_ns = delta_pace.interval_ns(time.thread_time_ns() - before_ns)
+                due.delta_ns = now_ns + interval_ns
+                due.urgent_delta_ns = now_ns + interval_ns // 2
         while self._snapshot_requests:
             snapshot = (
                 self._publisher.snapshot()

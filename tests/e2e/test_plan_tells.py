@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.console_page import painted, painted_at_edges
+from tests.e2e.console_page import PLAN_MOVES_MS, painted, painted_at_edges, press
 from tests.e2e.stage import Stage
 
 
@@ -48,6 +48,37 @@ def test_zoom_by_keyboard_is_kept_until_reset(stage: Stage) -> None:
     assert scale.inner_text() == close_up != "10 m"
     page.get_by_role("button", name="Fit").click()
     expect(scale).to_have_text("10 m")
+
+
+# Collects each scale that the plan comes to.
+_WATCH_SCALES = """
+window.scales = [];
+new MutationObserver(() => {
+  const scale = document.querySelector(".ol-scale-line-inner").style.width;
+  if (scale !== window.scales.at(-1)) window.scales.push(scale);
+}).observe(document.querySelector(".ol-scale-line"), { subtree: true, attributes: true });
+"""
+_GROUND = "document.querySelector('.ol-layer canvas').toDataURL()"
+
+
+def test_choosing_a_member_moves_the_plan_at_once_and_only_where_it_must(stage: Stage) -> None:
+    """Each step of a glide would draw the whole map."""
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), plan=None), "large")
+    for _ in range(4):
+        page.get_by_role("button", name="Zoom out").click()
+        page.wait_for_timeout(400)
+    far = page.evaluate(_GROUND)
+    page.evaluate(_WATCH_SCALES)
+    press(page.locator(".card-head").nth(0))
+    page.wait_for_timeout(PLAN_MOVES_MS)
+    assert len(page.evaluate("window.scales")) == 1
+    near = page.evaluate(_GROUND)
+    assert near != far
+    press(page.locator(".card-head").nth(1))  # some metres away: seen from near already
+    page.wait_for_timeout(PLAN_MOVES_MS)
+    expect(page.locator(".card.chosen")).to_have_count(1)
+    assert page.evaluate(_GROUND) == near
+    assert len(page.evaluate("window.scales")) == 1
 
 
 def test_unavailable_plan_tool_takes_no_clicks(stage: Stage) -> None:

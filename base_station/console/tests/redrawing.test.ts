@@ -1,12 +1,13 @@
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
-import { atMostEvery } from "../src/plan/redrawing";
+import { noteFrame } from "../src/live/frameCost";
+import { atMostEvery, redrawMs } from "../src/plan/redrawing";
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
 
 function drawing(takesMs: number) {
   const drawnMs: number[] = [];
-  const redraw = atMostEvery(200, () => {
+  const redraw = atMostEvery(() => 200, () => {
     drawnMs.push(performance.now() - beganMs);
     vi.setSystemTime(Date.now() + takesMs);
     vi.advanceTimersByTime(takesMs);
@@ -21,13 +22,13 @@ it("draws once a period, however often it is asked", () => {
     redraw.ask();
     vi.advanceTimersByTime(10);
   }
-  expect(drawnMs).toEqual([200, 400, 600, 800, 1000]);
+  expect(drawnMs).toEqual([0, 200, 400, 600, 800, 1000]);
 });
 
 it("leaves a slow drawing four times its own time", () => {
   const { drawnMs, redraw } = drawing(100);
   redraw.ask();
-  vi.advanceTimersByTime(200);
+  vi.advanceTimersByTime(0); // the drawing itself lets 100 ms pass
   redraw.ask();
   vi.advanceTimersByTime(399);
   expect(drawnMs).toHaveLength(1);
@@ -41,4 +42,12 @@ it("draws no more once it is over", () => {
   redraw.cancel();
   vi.advanceTimersByTime(1000);
   expect(drawnMs).toEqual([]);
+});
+
+it("comes less often while the page is slow", () => {
+  const often = redrawMs();
+  for (let i = 0; i < 20; i++) noteFrame(150);
+  expect(redrawMs()).toBeGreaterThan(2 * often);
+  for (let i = 0; i < 20; i++) noteFrame(10);
+  expect(redrawMs()).toBe(often);
 });

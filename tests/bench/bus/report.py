@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rich.table import Table
 
-from base_station.engine.engine import DELTA_NS
+from base_station.engine.delta_pace import SHORTEST_NS
 from shared.clock import NS_PER_S
 from tests.rig.console_load import ConsoleTraffic
 from tests.rig.latency import Latency
@@ -52,7 +52,7 @@ class BusReport:
 def table_of(report: BusReport) -> Table:
     table = Table(
         title=f"{report.units} units, {report.consoles} consoles, {report.cores} cores",
-        caption=f"A console is told every {DELTA_NS / NS_PER_S:g} s, of alarms sooner.",
+        caption=f"A console gets a delta every {SHORTEST_NS / NS_PER_S:g} s, of alarms sooner.",
     )
     for title in ("", "measured", "to reach"):
         table.add_column(title, justify="left" if title == "" else "right")

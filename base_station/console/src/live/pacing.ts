@@ -6,29 +6,32 @@ import { noteFrame } from "./frameCost";
 /** Functions of the browser in use; tests replace them. */
 export interface Screen {
   nowMs(): number;
-  /** Called when the current drawing is on the screen. */
-  afterFrame(action: () => void): void;
+  /** Called when the current drawing is on the screen; that drawing took `drawnMs`. */
+  afterFrame(action: (drawnMs: number) => void): void;
   later(action: () => void, delayMs: number): unknown;
 }
 
 /** A hidden page has no animation frames, and still sounds alarms. */
 const LONGEST_FRAME_MS = 500;
-const LONGEST_REST_MS = 400;
+const LONGEST_REST_MS = 200;
 
 export const SCREEN: Screen = {
   nowMs: () => performance.now(),
   afterFrame: (action) => {
     if (document.visibilityState === "hidden") {
-      action();
+      action(0);
       return;
     }
     let waits = true;
-    const once = () => {
-      if (waits) action();
+    const once = (drawnMs: number) => {
+      if (waits) action(drawnMs);
       waits = false;
     };
-    requestAnimationFrame(() => setTimeout(once, 0));
-    setTimeout(once, LONGEST_FRAME_MS);
+    requestAnimationFrame(() => {
+      const beganMs = performance.now();
+      setTimeout(() => once(performance.now() - beganMs), 0);
+    });
+    setTimeout(() => once(0), LONGEST_FRAME_MS);
   },
   later: (action, delayMs) => setTimeout(action, delayMs),
 };
@@ -37,6 +40,7 @@ export const SCREEN: Screen = {
 export class Pacing {
   private count = 0;
   private confirmed = 0;
+  private workMs = 0; // since the last frame
   private isBusy = false;
   private isOver = false;
 
@@ -50,6 +54,7 @@ export class Pacing {
     const beganMs = this.screen.nowMs();
     show();
     this.count += 1;
+    this.workMs += this.screen.nowMs() - beganMs;
     this.follow(beganMs);
   }
 
@@ -57,15 +62,17 @@ export class Pacing {
     this.isOver = true;
   }
 
-  /** The pause is as long as the work before it: half of the time is left for input. */
+  /** The pause is as long as the page's own work for what came: half of the time is left for input.  Waiting and
+   * other work do not count, and the longest pause is short beside the second that the picture may be old. */
   private follow(beganMs: number): void {
     if (this.isBusy) return;
     this.isBusy = true;
-    this.screen.afterFrame(() => {
+    this.screen.afterFrame((drawnMs) => {
       const shown = this.count;
-      const busyMs = this.screen.nowMs() - beganMs;
-      noteFrame(busyMs);
-      this.screen.later(() => this.rested(shown), Math.min(busyMs, LONGEST_REST_MS));
+      noteFrame(this.screen.nowMs() - beganMs);
+      const restMs = Math.min(this.workMs + drawnMs, LONGEST_REST_MS);
+      this.workMs = 0;
+      this.screen.later(() => this.rested(shown), restMs);
     });
   }
 

@@ -7,6 +7,12 @@ const ROAMING_MOST_M = 250;
 /** From this age a position is marked as old everywhere. */
 export const OLD_MS = 10_000;
 const SIDES = 48;
+/** Sine and cosine to each corner of a ring, which is closed by the first one: rings are drawn for hundreds of
+ * people, many times a second. */
+const CORNERS = Array.from({ length: SIDES + 1 }, (_, i) => {
+  const turn = (2 * Math.PI * (i % SIDES)) / SIDES;
+  return [Math.sin(turn), Math.cos(turn)] as const;
+});
 
 export interface Region {
   major_m: number;
@@ -47,10 +53,9 @@ export function outline(
 export function ring(centre: readonly [number, number], region: Region): [number, number][] {
   const sin = Math.sin(region.heading_rad);
   const cos = Math.cos(region.heading_rad);
-  return Array.from({ length: SIDES + 1 }, (_, i) => {
-    const turn = (2 * Math.PI * (i % SIDES)) / SIDES;
-    const along = region.major_m * Math.cos(turn);
-    const across = region.minor_m * Math.sin(turn);
+  return CORNERS.map(([sinOfTurn, cosOfTurn]) => {
+    const along = region.major_m * cosOfTurn;
+    const across = region.minor_m * sinOfTurn;
     return [centre[0] + along * sin + across * cos, centre[1] + along * cos - across * sin];
   });
 }

@@ -14,14 +14,14 @@ import { beginOnAFloor } from "./floorShown";
 import { areImportsShown, followImports, imports } from "./imports";
 import type { PlanMap } from "./map";
 import { followTrails, pastTrails, shownKinds } from "./pastTrails";
-import { atMostEvery, REDRAW_MS } from "./redrawing";
+import { atMostEvery, redrawMs } from "./redrawing";
 import { clicked, tool } from "./tools";
 
 const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 
 /** Starts the updates; the returned function ends them. */
 export function follow(map: PlanMap, picture: Picture): () => void {
-  const redraw = atMostEvery(REDRAW_MS, () =>
+  const redraw = atMostEvery(redrawMs, () =>
     guarded(t("frame.plan"), () =>
       map.showPeople({
         units: picture.allUnits(),

@@ -1,8 +1,7 @@
 /** People on the plan, on a canvas of their own: when they move, nothing else of the map is drawn again. */
-import { boundingExtent, containsXY, createEmpty, extend, type Extent } from "ol/extent";
+import { boundingExtent, containsXY, createEmpty, extend, intersects, type Extent } from "ol/extent";
 import Layer from "ol/layer/Layer";
 import type { FrameState } from "ol/Map";
-import { measureTextWidth } from "ol/render/canvas";
 import type { Colours } from "./colours";
 import {
   colourOf,
@@ -24,6 +23,7 @@ import { BESIDE, boxesOf, placeNames, type Box, type Named, type Pixel, type Pla
 import { shownPeople, type Scene, type Shown } from "./peopleScene";
 import { Regions, type PixelOf } from "./regions";
 import { Sprites, type Context } from "./sprites";
+import { TextWidths } from "./textWidths";
 
 /** A heading is drawn to five degrees. */
 const HEADINGS = 72;
@@ -48,6 +48,7 @@ export class PeopleLayer extends Layer {
   readonly obstacles = new NameObstacles();
   private readonly canvas = document.createElement("canvas");
   private readonly sprites = new Sprites();
+  private readonly widths = new TextWidths();
   private readonly regions = new Regions();
   private readonly sides = new Map<string, Side>(); // on which each name stands
   private drawn: readonly Drawn[] = [];
@@ -64,7 +65,7 @@ export class PeopleLayer extends Layer {
     const all = shownPeople(scene);
     const named = all.map(({ unitId, centre, looks }): Named => ({
       mark: scene.screen.pixelOf(centre) ?? BESIDE,
-      widthPx: measureTextWidth(labelFont(looks), labelOf(looks)),
+      widthPx: this.widths.of(labelFont(looks), labelOf(looks)),
       strong: isStrong(looks),
       before: this.sides.get(unitId) ?? null,
     }));
@@ -106,7 +107,7 @@ export class PeopleLayer extends Layer {
     return this.canvas;
   }
 
-  private paint({ size, pixelRatio, coordinateToPixelTransform }: FrameState): void {
+  private paint({ size, extent, pixelRatio, coordinateToPixelTransform }: FrameState): void {
     const context = this.canvas.getContext("2d");
     const { colours } = this;
     if (context === null || colours === null) return;
@@ -115,8 +116,8 @@ export class PeopleLayer extends Layer {
     const [a = 1, b = 0, c = 0, d = 1, e = 0, f = 0] = coordinateToPixelTransform;
     const pixelOf: PixelOf = ([x = 0, y = 0]) => [a * x + c * y + e, b * x + d * y + f];
     context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
-    const onScreen = [0, 0, width, height];
-    this.regions.draw(context, this.drawn.filter(({ border }) => isSeen(border, pixelOf, onScreen)), pixelOf, colours);
+    const regions = this.drawn.filter(({ border }) => isSeen(border, extent));
+    this.regions.draw(context, regions, pixelOf, colours);
     for (const one of this.drawn) drawTrail(context, one, pixelOf, colours);
     context.setTransform(1, 0, 0, 1, 0, 0);
     this.sprites.begin(pixelRatio, colours);
@@ -144,7 +145,7 @@ export class PeopleLayer extends Layer {
     const [right, down] = name.offset;
     const font = labelFont(looks);
     const text = labelOf(looks);
-    const size: Pixel = [measureTextWidth(font, text) + 2 * HALO_PX, LINE_PX + 2 * HALO_PX];
+    const size: Pixel = [this.widths.of(font, text) + 2 * HALO_PX, LINE_PX + 2 * HALO_PX];
     this.sprites.draw(context, `name ${font} ${text}`, [x + right, y + down], size, (sheet) =>
       drawName(sheet, looks, colours),
     );
@@ -162,12 +163,9 @@ function fit(canvas: HTMLCanvasElement, context: Context, width: number, height:
   context.clearRect(0, 0, width, height);
 }
 
-/** Whether a part of a border may be on the screen. */
-function isSeen(border: readonly [number, number][], pixelOf: PixelOf, screen: Extent): boolean {
-  if (border.length === 0) return false;
-  const [left = 0, top = 0, right = 0, bottom = 0] = boundingExtent(border.map((at) => [...pixelOf(at)]));
-  const [x0 = 0, y0 = 0, x1 = 0, y1 = 0] = screen;
-  return right >= x0 && left <= x1 && bottom >= y0 && top <= y1;
+/** Whether a part of a border may be in the part of the site that is on the screen. */
+function isSeen(border: [number, number][], onScreen: Extent | null): boolean {
+  return border.length > 0 && onScreen !== null && intersects(boundingExtent(border), onScreen);
 }
 
 function drawTrail(context: Context, { looks, trail }: Drawn, pixelOf: PixelOf, colours: Colours): void {

@@ -67,7 +67,7 @@ export function followSection(
       });
       if (JSON.stringify(next) !== JSON.stringify(drawn.peek())) drawn.value = next;
     });
-  const redraw = atMostEvery(SECTION_REDRAW_MS, draw);
+  const redraw = atMostEvery(() => SECTION_REDRAW_MS, draw);
   const ends = [
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value, picture.nowMs.value];

@@ -80,7 +80,7 @@ export function openStack(
       });
       if (JSON.stringify(next) !== JSON.stringify(drawn.peek())) drawn.value = next;
     });
-  const redraw = atMostEvery(SECTION_REDRAW_MS, draw);
+  const redraw = atMostEvery(() => SECTION_REDRAW_MS, draw);
   const ends = [
     effect(() => {
       void siteId.value;
