@@ -24,9 +24,9 @@ describe("margins about people on the plan", () => {
 describe("the middle of the plan", () => {
   const isIn = (place: [number, number] | null) => isInMiddle(place, [800, 400]);
 
-  it("is half of its width and of its height", () => {
-    expect([isIn([400, 200]), isIn([210, 110]), isIn([590, 290])]).toEqual([true, true, true]);
-    expect([isIn([190, 200]), isIn([610, 200]), isIn([400, 90]), isIn([400, 310])]).not.toContain(true);
+  it("is three fifths of its width and of its height", () => {
+    expect([isIn([400, 200]), isIn([170, 90]), isIn([630, 310])]).toEqual([true, true, true]);
+    expect([isIn([150, 200]), isIn([650, 200]), isIn([400, 70]), isIn([400, 330])]).not.toContain(true);
   });
 
   it("is not known before the plan is drawn", () => {

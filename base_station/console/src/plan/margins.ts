@@ -11,7 +11,7 @@ const LEAST: Margins = [25, 68, 25, 25];
 const WIDE_PX = 300;
 const HIGH_PX = 220;
 /** The middle part of the plan, of its width and of its height. */
-const MIDDLE = 0.5;
+const MIDDLE = 0.6;
 
 export function fitMargins(size: readonly number[]): Margins {
   return scaled(FIT, size);
