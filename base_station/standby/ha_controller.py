@@ -278,75 +278,64 @@ class HaController:
         return silent_ns > self._config.lease_s * NS_PER_S
 
     def _problems(self) -> list[str]:
-        other, now_ns = self._election.other, self._around.clock.monotonic_ns()
-        stranger = self._hearing.stranger
-        found = [stranger] if stranger else []
-        if self.leads:
-            if not self.copy.is_followed:
-                found.append(
-                    coded(
-                        "standby-none",
-                        "There is no standby: what is done now is on this station alone",
-                    )
-                )
-            elif self.copy.is_behind:
-                found.append(
-                    coded(
-                        "standby-behind",
-                        "The standby is behind: what is done now is on this station alone",
-                    )
-                )
-        elif self._election.is_cut_off(now_ns):
+        of_role = self._leader_problem() if self.leads else self._standby_problem()
+        return [one for one in (self._hearing.stranger, of_role, self._follower.problem) if one]
+
+    def _leader_problem(self) -> str:
+        if not self.copy.is_followed:
+            return coded(
+                "standby-none",
+                "There is no standby: what is done now is on this station alone",
+            )
+        if self.copy.is_behind:
+            return coded(
+                "standby-behind",
+                "The standby is behind: what is done now is on this station alone",
+            )
+        return ""
+
+    def _standby_problem(self) -> str:
+        other = self._election.other
+        if self._election.is_cut_off(self._around.clock.monotonic_ns()):
             assert other is not None
-            found.append(
-                coded(
-                    "standby-cut-off",
-                    "No message of {station} or of any unit arrives: this station is probably cut "
-                    "off. It takes over as soon as it receives a unit, or by hand",
-                    station=other.station,
-                )
+            return coded(
+                "standby-cut-off",
+                "No message of {station} or of any unit arrives: this station is probably cut "
+                "off. It takes over as soon as it receives a unit, or by hand",
+                station=other.station,
             )
-        elif self.followed() is None and self._around.log.place == START:
-            found.append(
-                coded(
-                    "standby-empty",
-                    "No active station is reachable, and this new standby has nothing yet: it "
-                    "waits",
-                )
+        if self.followed() is None:
+            return self._problem_without_leader()
+        if self._around.log.is_cut_short or self._around.log.problem:
+            return coded(
+                "standby-disk",
+                "The disk of this standby does not take the log: free or mend it; what is "
+                "missing is fetched then",
             )
-        elif self.followed() is None and self._election.lacks_log:
+        if not self.in_step:
+            return coded(
+                "standby-fetching",
+                "This standby has not got everything of the active station yet",
+            )
+        return ""
+
+    def _problem_without_leader(self) -> str:
+        if self._around.log.place == START:
+            return coded(
+                "standby-empty",
+                "No active station is reachable, and this new standby has nothing yet: it waits",
+            )
+        if self._election.lacks_log:
+            other = self._election.other
             assert other is not None
-            found.append(
-                coded(
-                    "standby-lacks-log",
-                    "{station} is not reachable, and this standby has not got everything of it: "
-                    "it waits {wait_s:.0f} s for it to come back, and takes over then, or by hand",
-                    station=other.station,
-                    wait_s=LACKING_LEASES * self._config.lease_s,
-                )
+            return coded(
+                "standby-lacks-log",
+                "{station} is not reachable, and this standby has not got everything of it: "
+                "it waits {wait_s:.0f} s for it to come back, and takes over then, or by hand",
+                station=other.station,
+                wait_s=LACKING_LEASES * self._config.lease_s,
             )
-        elif self.followed() is None:
-            found.append(
-                coded(
-                    "standby-takes-over",
-                    "No active station is reachable: this one takes over in some seconds",
-                )
-            )
-        elif self._around.log.is_cut_short or self._around.log.problem:
-            found.append(
-                coded(
-                    "standby-disk",
-                    "The disk of this standby does not take the log: free or mend it; what is "
-                    "missing is fetched then",
-                )
-            )
-        elif not self.in_step:
-            found.append(
-                coded(
-                    "standby-fetching",
-                    "This standby has not got everything of the active station yet",
-                )
-            )
-        if self._follower.problem:
-            found.append(self._follower.problem)
-        return found
+        return coded(
+            "standby-takes-over",
+            "No active station is reachable: this one takes over in some seconds",
+        )

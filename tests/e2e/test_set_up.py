@@ -366,7 +366,7 @@ def test_suggested_place_of_a_model_is_optional(page: Page, complaints: list[str
     site.get_by_label("New plan").set_input_files(file)
     confirm(site, "Replace plan")
     expect(site).to_have_count(0)
-    assert plan_of(page)["muster"]["name"] == "Default.ifc"
+    assert plan_of(page)["muster"]["name"] == "Default"
     site = menu(page, "Site")
     expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
     close(site)

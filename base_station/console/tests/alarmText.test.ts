@@ -2,7 +2,7 @@ import { afterEach, describe, expect, it } from "vitest";
 import type { AlarmParametersView } from "../src/answers";
 import { alarmLabel } from "../src/format";
 import { LANGUAGES, show } from "../src/language/catalogue";
-import { en } from "../src/language/en";
+import * as en from "../src/language/en";
 import { units } from "../src/language/measures";
 import { alarmText } from "../src/live/alarmText";
 import { alarm } from "./fixtures";

@@ -2,9 +2,9 @@ import { IntlMessageFormat } from "intl-messageformat";
 import { afterEach, describe, expect, it } from "vitest";
 import * as format from "../src/format";
 import { type Catalogue, type Language, LANGUAGES, type PartName, show, shown } from "../src/language/catalogue";
-import { de } from "../src/language/de";
-import { en } from "../src/language/en";
-import { fr } from "../src/language/fr";
+import * as de from "../src/language/de";
+import * as en from "../src/language/en";
+import * as fr from "../src/language/fr";
 import { degrees, floorNames, length, metresOf, shownLength, speed, units } from "../src/language/measures";
 import { label, rich, t } from "../src/language/translate";
 

@@ -4,7 +4,7 @@ import { t } from "../language/translate";
 import type { DepartmentIncidentView, DepartmentView, StartedReplay } from "./answers";
 import { consoleUrl } from "./consoles";
 import { foundIncidents, incidentSearch, incidentSkip, openArchived, searchIncidents } from "./reports";
-import { ConsoleLink, Section } from "./Section";
+import { ConsoleLink, SearchField, Section } from "./Section";
 import { Turner } from "./Turner";
 
 const COLUMNS = ["incident", "station", "people", "maydays", "alarms_open", "par_overdue", "opened", "show"] as const;
@@ -24,15 +24,7 @@ export function Incidents({ view }: { view: DepartmentView }) {
       ))}
     >
       <p class="row">
-        <label class="row">
-          {t("department.search_incident")}
-          <input
-            type="search"
-            maxLength={80}
-            value={incidentSearch}
-            onInput={(event) => searchIncidents(event.currentTarget.value)}
-          />
-        </label>
+        <SearchField text={t("department.search_incident")} value={incidentSearch} search={searchIncidents} />
         {found !== null && (
           <Turner
             first={incidentSkip.value}

@@ -3,7 +3,7 @@ import { length } from "../language/measures";
 import { label, t } from "../language/translate";
 import type { DepartmentPersonView, DepartmentView } from "./answers";
 import { people, search, skip, station, turnTo, want } from "./reports";
-import { Section } from "./Section";
+import { SearchField, Section } from "./Section";
 import { Turner } from "./Turner";
 
 const COLUMNS = ["who", "crew", "station", "incident", "link", "place", "par", "alarms_open"] as const;
@@ -23,15 +23,7 @@ export function People({ view }: { view: DepartmentView }) {
       ))}
     >
       <p class="row">
-        <label class="row">
-          {t("department.search")}
-          <input
-            type="search"
-            maxLength={80}
-            value={search}
-            onInput={(event) => want({ search: event.currentTarget.value })}
-          />
-        </label>
+        <SearchField text={t("department.search")} value={search} search={(value) => want({ search: value })} />
         <label class="row">
           {t("department.station")}
           <select value={station} onChange={(event) => want({ station: event.currentTarget.value })}>

@@ -1,4 +1,5 @@
 /** A part of the page with its table. */
+import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { Columns } from "../ui/Columns";
 
@@ -37,5 +38,20 @@ export function ConsoleLink({ text, url }: { text: string; url: string }) {
     <a href={url} target="_blank" rel="noopener">
       {text}
     </a>
+  );
+}
+
+interface SearchProps {
+  text: string;
+  value: Signal<string>;
+  search: (value: string) => void;
+}
+
+export function SearchField({ text, value, search }: SearchProps) {
+  return (
+    <label class="row">
+      {text}
+      <input type="search" maxLength={80} value={value} onInput={(event) => search(event.currentTarget.value)} />
+    </label>
   );
 }

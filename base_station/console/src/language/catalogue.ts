@@ -1,7 +1,7 @@
 /** The texts of the console in the chosen language.  English is part of the page; another language is
  * fetched once it is chosen. */
 import { effect, signal } from "@preact/signals";
-import { en } from "./en";
+import * as en from "./en";
 
 export const LANGUAGES = ["en", "de", "fr"] as const;
 export type Language = (typeof LANGUAGES)[number];
@@ -20,8 +20,8 @@ export type Message<K extends Key> = K extends `${infer P extends PartName}.${in
 
 const FILES: Record<Language, () => Promise<Catalogue>> = {
   en: () => Promise.resolve(en),
-  de: () => import("./de").then((file) => file.de),
-  fr: () => import("./fr").then((file) => file.fr),
+  de: () => import("./de"),
+  fr: () => import("./fr"),
 };
 
 interface Shown {

@@ -8,39 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from base_station.app import kept_announcement
 from base_station.app.station_presence import StationPresence
 from base_station.config import BusConfig, StandbyConfig, StationConfig
 from base_station.security.pki.folder import PkiFolder
 from shared.discovery import Announcement
 from shared.errors import BusError, ConfigError
 from shared.tls import fingerprint
+from tests.rig.announced import Announced
 
 Presence = Callable[..., StationPresence]
-
-
-class Announced:
-    """Announcers in place of those that send."""
-
-    def __init__(self) -> None:
-        self.now: list[tuple[Announcement, tuple[str, ...]]] = []
-        self.fault: BusError | None = None
-
-    def begin(self, announcement: Announcement, interfaces: tuple[str, ...]) -> Announced:
-        if self.fault is not None:
-            raise self.fault
-        self.now.append((announcement, interfaces))
-        return self
-
-    def close(self) -> None:
-        self.now.pop()
-
-
-@pytest.fixture
-def announced(monkeypatch: pytest.MonkeyPatch) -> Announced:
-    announced = Announced()
-    monkeypatch.setattr(kept_announcement, "Announcer", announced.begin)
-    return announced
 
 
 @pytest.fixture
