@@ -338,7 +338,7 @@ def test_storeys_of_a_model_become_floors(
     file = FilePayload(name="Mill Road 9.ifc", mimeType="model/ifc", buffer=house.content())
     presses = Presses(page)
     site.get_by_label("New plan").set_input_files(file)
-    expect(site).to_contain_text("0 is Ground floor at 0.00 m, 1 is Upper floor at 3.00 m")
+    expect(site).to_contain_text("Its floors: 0 = Ground floor (0.00 m), 1 = Upper floor (3.00 m).")
     place = site.get_by_role("checkbox", name="place on the Earth: 57.70000°, 11.97")
     expect(place).not_to_be_checked()
     assert barriers(page) == []
