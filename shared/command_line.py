@@ -110,8 +110,8 @@ class _Commands(TyperGroup):
 
 
 def _help_in_source(point: EntryPoint) -> str | None:
-    """Of the function or ``typer.Typer(help=...)`` that a point names, where it is one; nothing
-    but its packages is imported.
+    """Help of the function or ``typer.Typer(help=...)`` that a point names, if it is one; only
+    its packages are imported.
     """
     spec = find_spec(point.module)
     if spec is None or spec.origin is None:

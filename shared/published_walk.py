@@ -44,7 +44,7 @@ def write_walk(path: Path, walk: PublishedWalk) -> None:
 
 
 def read_walk(path: Path) -> PublishedWalk:
-    """Of a file that ``write_walk`` wrote."""
+    """Walk in a file of ``write_walk``."""
     table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
     figures = table[:, len(TRUTH) : len(TRUTH) + len(FIGURES)].tolist()
     flags = table[:, len(TRUTH) + len(FIGURES) :].astype(np.int64).tolist()

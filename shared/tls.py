@@ -30,7 +30,7 @@ class TlsIdentity:
     private_key: bytes = field(repr=False)
 
     def common_name(self) -> str:
-        """Whom the certificate names.  Raises ConfigError when it cannot be read."""
+        """Subject of the certificate.  Raises ConfigError when it cannot be read."""
         return common_name(parse_certificate(self.certificate, "certificate"))
 
 

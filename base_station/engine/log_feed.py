@@ -32,7 +32,7 @@ class LogFeed(ABC):
     @property
     @abstractmethod
     def log_id(self) -> str:
-        """Of its segments; empty: of an earlier version."""
+        """Identity in its segments; empty: of an earlier version."""
 
     @abstractmethod
     def noting(self, on_damage: Callable[[str], object]) -> LogFeed:

@@ -48,7 +48,7 @@ def incident_tracks(
 
 
 def _ground_down_m(geojson: bytes | None) -> float | None:
-    """Of the plan's ground floor, which is at the ground outside."""
+    """Height of the plan's ground floor, which is at the ground outside."""
     storeys = () if geojson is None else salvage_plan(geojson).storeys
     ground = storey_of(storeys, 0)
     return None if ground is None else ground.down_m

@@ -215,7 +215,7 @@ class _Standing:
             self._records[what] = record
 
     def keep_dispatch(self, number: str) -> None:
-        """Of all dispatches the one from which the incident was opened; empty: none."""
+        """Keeps the dispatch from which the incident was opened; empty: none."""
         others = [what for what in self._records if what[0] == _DISPATCH and what[1] != number]
         for what in others:
             del self._records[what]

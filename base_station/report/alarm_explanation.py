@@ -107,7 +107,7 @@ class AlarmExplainer:
 def _crossing(
     alarm: AlarmRow, facts: UnitFacts, thresholds: Mapping[str, float]
 ) -> Crossing | None:
-    """Of the worst level whose threshold the value reached that came last before the alarm."""
+    """Crossing of the worst threshold that the last value before the alarm reached."""
     series_name, by_level = _JUDGED.get(alarm.rule, ("", {}))
     if not series_name:
         return None

@@ -16,7 +16,7 @@ def parameters_view(parameters: AlarmParameters, people: PersonLookup) -> AlarmP
 
 
 def stored_parameters_view(stored: str, people: PersonLookup) -> AlarmParametersView:
-    """Of the JSON in the tables."""
+    """Parameters from the JSON in the tables."""
     return named_parameters(msgspec.json.decode(stored, type=AlarmParametersView), people)
 
 

@@ -23,7 +23,7 @@ class Responder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def source_flags(self) -> tuple[str, ...]:
-        """Of ``muster edge run``."""
+        """Options of ``muster edge run``."""
         if not self.sensors:
             return "--source", self.source
         return tuple(

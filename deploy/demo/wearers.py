@@ -38,7 +38,7 @@ class Wearer:
 
     @property
     def flags(self) -> Sequence[str]:
-        """Of ``muster edge run``."""
+        """Options of ``muster edge run``."""
         button, output = f"socket:{self._socket}", f"terminal:{self.responder.unit}"
         return ("--button", button, "--output", output)
 

@@ -12,8 +12,8 @@ from edge.preflight.finding import CheckFinding, Severity
 from edge.sources.sysfs import SYSFS, explain_read_error
 
 _TEST = Notice(Signal.TEXT, text="this is a test.")
-_NOBODY_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
-NO_OUTPUT = CheckFinding("output", Severity.WARNING, "the unit has none", _NOBODY_NOTIFIED)
+_NO_WEARER_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
+NO_OUTPUT = CheckFinding("output", Severity.WARNING, "the unit has none", _NO_WEARER_NOTIFIED)
 
 
 def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[CheckFinding]:
@@ -28,7 +28,7 @@ def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Check
             notifier.close()
         except OSError as error:
             yield CheckFinding(
-                subject, Severity.FAILED, explain_read_error(error), _NOBODY_NOTIFIED
+                subject, Severity.FAILED, explain_read_error(error), _NO_WEARER_NOTIFIED
             )
         else:
             yield CheckFinding(

@@ -118,7 +118,7 @@ class EvdevButton:
         return self._find_by_name(library, wanted)
 
     def _find_by_name(self, library: ModuleType, wanted: int | None) -> tuple[Any, int]:
-        """Of several that have the name, as many keyboards are, take the one that has the key."""
+        """Device with the key, of several that have the name, as parts of a keyboard do."""
         with ExitStack() as opened:
             there = list(_all_devices(library, opened))
             named = [device for device in there if device.name == self._place]

@@ -16,7 +16,7 @@ _REPORT_EVERY = 10_000  # messages
 
 @dataclass(frozen=True, slots=True)
 class FileContents:
-    """Of one file; times are those of the first and the last record, None where it has none."""
+    """One file; times are those of the first and the last record, None where it has none."""
 
     path: Path
     state: SegmentState  # closed: ended in order

@@ -19,7 +19,7 @@ _Heads = Mapping[Path, SegmentIdentity | None]  # None: damaged, which any segme
 
 
 def log_id_of(paths: Iterable[Path]) -> str:
-    """Of segments in their order; empty: none says so."""
+    """Identity of the log of segments in their order; empty: none states it."""
     ids = Counter(head.log_id for head in map(identity_of, paths) if head and head.log_id)
     return max(ids, key=ids.__getitem__, default="")  # of as many, the first one
 

@@ -95,7 +95,7 @@ def _torn_of(path: Path) -> list[Path]:
 
 
 def _tear(torn: Path) -> int:
-    """Of how many it is of its segment."""
+    """Number of a truncated original among those of its segment."""
     return int(torn.name.rpartition(TORN)[2] or 1)
 
 

@@ -43,7 +43,7 @@ def log_topic(unit_id: str) -> str:
 
 
 def audio_topic(channel: str) -> str:
-    """Of a radio channel.  It follows from nothing, but no reader of events wants it."""
+    """Schema of a radio channel.  It follows from nothing, but no reader of events wants it."""
     return f"{FOXGLOVE}radio/{channel}/audio"
 
 

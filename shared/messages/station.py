@@ -204,7 +204,7 @@ class SetAccountability(msgspec.Struct, frozen=True):
 
 
 class SetThresholds(msgspec.Struct, frozen=True):
-    """Of alarm rules, by ``rule.threshold``; what is not named has its default."""
+    """Thresholds of alarm rules, by ``rule.threshold``; what is not named has its default."""
 
     thresholds: dict[str, float]
 

@@ -218,8 +218,8 @@ async def test_token_of_a_unit_is_limited_to_its_samples(
         assert (await node.get(path)).status_code == 403, path
     async with station.client(Role.COMMANDER) as commander:
         assert (await commander.post(PATH, json=body(batch(1)))).status_code == 403
-    async with station.client() as nobody:
-        assert (await nobody.post(PATH, json=body(batch(1)))).status_code == 401
+    async with station.client() as anonymous:
+        assert (await anonymous.post(PATH, json=body(batch(1)))).status_code == 401
 
 
 async def test_a_token_is_listed_without_its_secret_and_ends_when_it_is_removed(

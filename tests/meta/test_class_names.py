@@ -1,4 +1,4 @@
-"""Names of classes, first words of docstrings and words of identifiers, in what is shipped."""
+"""Names of shipped classes; first words of docstrings and words of identifiers, in tests too."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from functools import cache
 from tests.conftest import PROJECT_ROOT
 
 SHIPPED = ("base_station", "deploy", "edge", "shared")
-QUESTION_WORDS = {"How", "What", "When", "Where", "Whether", "Which", "Who", "Whose", "Why"}
-EVERYDAY_WORDS = {"said", "told", "heard", "somebody", "anybody", "whoever"}
+WRITTEN = (*SHIPPED, "tests")
+QUESTION_WORDS = {"How", "What", "When", "Where", "Whether", "Which", "Who", "Whom", "Whose", "Why"}
+NO_FIRST_WORDS = {*QUESTION_WORDS, "Of"}  # "Of" continues the name of the object
+EVERYDAY_WORDS = {"said", "told", "heard", "somebody", "anybody", "nobody", "whoever"}
 PUBLISHED_NAMES = {
     "last_heard_ms": "field of the live picture and of the API",
     "last_heard_ns": "column of the table of units",
@@ -20,11 +22,11 @@ PUBLISHED_NAMES = {
 
 
 @cache
-def modules() -> dict[str, ast.Module]:
+def modules(packages: tuple[str, ...]) -> dict[str, ast.Module]:
     """Modules that people wrote; a migration stays as it was released."""
     return {
         str(path.relative_to(PROJECT_ROOT)): ast.parse(path.read_text(encoding="utf-8"))
-        for package in SHIPPED
+        for package in packages
         for path in sorted((PROJECT_ROOT / package).rglob("*.py"))
         if not path.name.endswith("_pb2.py")
         and not {"migrations", "node_modules"} & set(path.parts)
@@ -33,7 +35,7 @@ def modules() -> dict[str, ast.Module]:
 
 def test_class_name_is_defined_once() -> None:
     places = defaultdict(list)
-    for path, module in modules().items():
+    for path, module in modules(SHIPPED).items():
         for node in module.body:
             if isinstance(node, ast.ClassDef):
                 places[node.name].append(path)
@@ -44,15 +46,15 @@ def test_class_name_is_defined_once() -> None:
 def test_module_docstring_begins_with_a_noun_or_a_verb() -> None:
     asking = {
         path: text.splitlines()[0]
-        for path, module in modules().items()
-        if (text := ast.get_docstring(module)) and text.split()[0].strip(",:") in QUESTION_WORDS
+        for path, module in modules(WRITTEN).items()
+        if (text := ast.get_docstring(module)) and text.split()[0].strip(",:") in NO_FIRST_WORDS
     }
     assert asking == {}
 
 
 def nodes() -> Iterator[tuple[str, ast.AST]]:
     """Nodes of all modules, with the path and line of each."""
-    for path, module in modules().items():
+    for path, module in modules(WRITTEN).items():
         for node in ast.walk(module):
             yield f"{path}:{getattr(node, 'lineno', 1)}", node
 
@@ -63,7 +65,7 @@ def test_docstring_begins_with_a_noun_or_a_verb() -> None:
         for place, node in nodes()
         if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
         and (text := ast.get_docstring(node))
-        and text.split()[0].strip(",:") in QUESTION_WORDS
+        and text.split()[0].strip(",:") in NO_FIRST_WORDS
     }
     assert asking == {}
 

@@ -23,7 +23,7 @@ router = APIRouter(tags=["recordings"])
 
 
 class NewPull(Form):
-    """Of an incident, or of a window."""
+    """Transfer of the recordings of an incident, or of a window."""
 
     unit_id: UnitIdText
     incident_id: PersonIdText | None = None

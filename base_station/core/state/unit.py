@@ -37,7 +37,7 @@ class Fault(msgspec.Struct, frozen=True):
 
     @property
     def parameters(self) -> AlarmParameters:
-        """Of the sentence of an alarm about it."""
+        """Parameters of the sentence of an alarm about it."""
         return AlarmParameters(
             fault=self.text,
             fault_code=self.code.code or None,

@@ -60,7 +60,7 @@ _NAMED = AuditEntry.action.in_(
     ("AddedPerson", "ChangedPerson")
 )  # "ID", or by an older version "ID NAME"
 _PLACED_NS = re.compile(r'"t_ns":(\d+)')  # the time of which a place is
-_NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
+_ERASED_PERSON = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
@@ -74,7 +74,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     _imports(session, erasure)
     if erasure.person_id:
         of_person = Assignment.person_id == erasure.person_id
-        session.execute(update(Assignment).where(of_person).values(_NOBODY))
+        session.execute(update(Assignment).where(of_person).values(_ERASED_PERSON))
         session.execute(delete(PersonRow).where(PersonRow.person_id == erasure.person_id))
         session.merge(Tombstone(what=f"{PERSON}{erasure.person_id}", until_ns=None))
     else:
@@ -274,7 +274,7 @@ def _without_wearer(entry: AuditEntry, erasure: Erasure) -> str:
         worn = msgspec.structs.replace(worn, person_id=ERASED_TEXT)
     elif worn.person_id != erasure.person_id:
         return entry.detail
-    return msgspec.json.encode(msgspec.structs.replace(worn, **_NOBODY)).decode()
+    return msgspec.json.encode(msgspec.structs.replace(worn, **_ERASED_PERSON)).decode()
 
 
 def _alarm_raised(entry: AuditEntry) -> tuple[str, int] | None:

@@ -6,7 +6,7 @@ from base_station.views.answer import Answer
 
 
 class GapView(Answer, frozen=True):
-    """Of this time the record has nothing."""
+    """Time without records."""
 
     from_ms: int
     until_ms: int

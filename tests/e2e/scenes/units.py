@@ -163,6 +163,6 @@ def quiet(count: int = 5) -> wire.Snapshot:
     return picture([unit(index) for index in range(count)])
 
 
-def nobody() -> wire.Snapshot:
+def no_members() -> wire.Snapshot:
     empty = picture([])
     return msgspec.structs.replace(empty, incident=None, plan=None)

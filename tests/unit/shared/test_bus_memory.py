@@ -64,7 +64,7 @@ def test_a_pumped_router_delivers_only_when_reported_in_the_order_of_publishing(
     assert router.pump() == 0
 
 
-def test_what_a_handler_publishes_comes_after_what_was_under_way() -> None:
+def test_message_published_by_a_handler_follows_those_in_delivery() -> None:
     router = MemoryRouter()
     station, unit = router.attach_station(), router.attach_unit()
     received: list[str] = []

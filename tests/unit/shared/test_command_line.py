@@ -73,7 +73,7 @@ def test_an_error_is_one_sentence_and_no_traceback():
 
 
 @pytest.mark.slow
-def test_what_the_system_says_of_a_file_is_one_sentence_too(tmp_path):
+def test_system_error_of_a_file_is_one_sentence(tmp_path):
     file = tmp_path / "file"
     file.write_text("")
     result = run("demo", "--data", str(file))

@@ -19,7 +19,7 @@ def _handlers() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_is_reported_also_while_it_looks_whether_it_is(number: signal.Signals) -> None:
+def test_signal_during_a_check_is_received(number: signal.Signals) -> None:
     """Two presses of Ctrl-C, or one in the instant in which the main thread holds the lock."""
     stop = end_requested()
     assert not stop.is_set()

@@ -107,7 +107,9 @@ def test_another_code_beside_it_is_not_taken_for_it(enrolment: Enrolment, path: 
     assert read_enrolment(path) == enrolment
 
 
-def test_of_two_enrolments_none_is_chosen(pki: PkiFolder, enrolment: Enrolment, path: Path) -> None:
+def test_picture_with_two_enrolments_is_refused(
+    pki: PkiFolder, enrolment: Enrolment, path: Path
+) -> None:
     beside([drawn(qr_code(one)) for one in (enrolment, pki.enroll("FF-02"))], path)
     assert "there are 2 enrolments in this picture" in refusal(path)
 

@@ -23,7 +23,7 @@ sys.stdin.read()
 """
 
 
-def test_a_second_holder_is_reported_who_holds_the_folder(tmp_path: Path) -> None:
+def test_second_holder_gets_the_identity_of_the_first(tmp_path: Path) -> None:
     lock = FolderLock(tmp_path)
     with pytest.raises(
         DataFolderInUseError, match=rf"another station .*\(process {os.getpid()}\): stop it"
@@ -35,7 +35,7 @@ def test_a_second_holder_is_reported_who_holds_the_folder(tmp_path: Path) -> Non
     FolderLock(tmp_path).close()
 
 
-def test_a_folder_that_nobody_ever_held_is_not_held_and_stays_as_it_is(tmp_path: Path) -> None:
+def test_folder_without_a_lock_is_free_and_unchanged(tmp_path: Path) -> None:
     assert not FolderLock.is_held(tmp_path)
     assert not FolderLock.is_held(tmp_path / "nowhere")
     assert not list(tmp_path.iterdir())

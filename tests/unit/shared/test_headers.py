@@ -15,14 +15,14 @@ from shared.messages.station import RegisterUnit
 
 
 @pytest.mark.parametrize(("schema", "unit_id"), [(0, "FF-01"), (1, "")])
-def test_what_does_not_say_who_or_how_is_no_message(schema: int, unit_id: str) -> None:
+def test_header_without_unit_or_schema_is_refused(schema: int, unit_id: str) -> None:
     payload = encode(Temperature(Header(unit_id, 7, 1, 5, schema=schema), 20.0))
     assert header_of(payload) is None
     with pytest.raises(WireError, match="no header"):
         decode(TEMPERATURE, payload)
 
 
-def test_what_can_be_read_and_makes_no_sense_is_refused_in_words() -> None:
+def test_readable_but_invalid_message_is_refused_with_a_reason() -> None:
     """An action of a newer program; nobody is to act on the half of it that is known."""
     header = Header(STATION_ID, 7, 1, 5)
     known = encode(OperatorAction(header, "a1", "chief", RegisterUnit("FF-01", "")))
@@ -32,7 +32,7 @@ def test_what_can_be_read_and_makes_no_sense_is_refused_in_words() -> None:
         decode(OPERATOR, wire.SerializeToString())
 
 
-def test_who_stated_it_is_known_where_the_rest_is_not() -> None:
+def test_sender_is_known_when_the_rest_is_unreadable() -> None:
     payload = encode(Temperature(Header("FF-01", 7, 3, 5), 20.0))
     header = header_of(payload)
     assert header is not None
@@ -41,7 +41,7 @@ def test_who_stated_it_is_known_where_the_rest_is_not() -> None:
 
 
 @pytest.mark.parametrize("number", range(2, 16))
-def test_who_stated_it_is_known_whatever_stands_behind_the_header(number: int) -> None:
+def test_sender_is_known_for_any_content_after_the_header(number: int) -> None:
     """No field of one kind of message is taken for that of another."""
     header = Header("FF-01", 7, 3, 5).to_wire()
     begins = header_pb2.AnyMessage(header=header).SerializeToString()
@@ -51,7 +51,7 @@ def test_who_stated_it_is_known_whatever_stands_behind_the_header(number: int) -
     assert (found.unit_id, found.boot_id, found.seq) == ("FF-01", 7, 3)
 
 
-def test_what_was_captured_earlier_is_of_that_time(clock: ManualClock, stamper: Stamper) -> None:
+def test_earlier_capture_keeps_its_time(clock: ManualClock, stamper: Stamper) -> None:
     clock.advance(60.0)
     then_ns = clock.monotonic_ns() - 5 * NS_PER_S
     header = stamper.header(then_ns)

@@ -54,7 +54,7 @@ def test_a_traceback_follows_its_line(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @pytest.mark.parametrize("character", "\x00\b\x1b\r\x7f\x85\x9b\u2028\u202e")
-def test_what_others_say_forges_no_line_and_moves_no_terminal(character: str) -> None:
+def test_foreign_text_forges_no_line_and_controls_no_terminal(character: str) -> None:
     record = logging.LogRecord("bus", logging.INFO, "", 0, "from %s", (f"an{character}na",), None)
     reported = OneLineFormatter().format(record)
     assert character not in reported

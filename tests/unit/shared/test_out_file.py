@@ -30,7 +30,7 @@ def test_a_place_that_cannot_is_refused(tmp_path, place):
         writable(tmp_path / place)
 
 
-def test_nobody_is_guided_through_a_calibration_that_cannot_be_kept(tmp_path):
+def test_calibration_that_cannot_be_saved_is_refused_at_the_start(tmp_path):
     out = str(tmp_path / "no" / "cal.toml")
     result = CliRunner().invoke(app, ["calibrate", "--source", "bench:1", "--out", out])
     assert isinstance(result.exception, UserError)
@@ -47,7 +47,7 @@ def test_a_secret_is_its_owners_alone_and_nothing_is_written_over(tmp_path):
     assert path.read_text() == "key"
 
 
-def test_of_a_secret_for_which_there_is_no_room_nothing_is_left(tmp_path, monkeypatch):
+def test_secret_without_room_on_the_disk_leaves_no_file(tmp_path, monkeypatch):
     def full(_descriptor):
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -79,6 +79,6 @@ def test_no_half_of_a_file_is_left_and_what_was_there_stays(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_what_is_no_file_is_written_as_it_comes():
+def test_target_that_is_no_regular_file_is_written_directly():
     with whole(Path(os.devnull)) as making:
         assert making == Path(os.devnull)

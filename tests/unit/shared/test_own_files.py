@@ -102,7 +102,9 @@ def make_backup(data: Path) -> None:
         make_backup,
     ],
 )
-def test_what_root_makes_is_the_stations(tmp_path: Path, act: Callable[[Path], None]) -> None:
+def test_files_made_by_root_belong_to_the_station(
+    tmp_path: Path, act: Callable[[Path], None]
+) -> None:
     data = tmp_path / "station"
     data.mkdir()
     os.chown(data, STATION, STATION)

@@ -20,7 +20,7 @@ def manager_socket(tmp_path: Path) -> Iterator[socket.socket]:
         yield listening
 
 
-def test_it_receives_that_the_program_is_ready_and_works(manager_socket):
+def test_service_manager_gets_ready_and_watchdog(manager_socket):
     manager = ServiceManager({"NOTIFY_SOCKET": manager_socket.getsockname()})
     manager.ready()
     manager.working()
@@ -40,11 +40,11 @@ def test_without_one_nothing_is_stated():
     ServiceManager({}).ready()
 
 
-def test_one_that_is_gone_costs_nothing(tmp_path):
+def test_missing_service_manager_is_ignored(tmp_path):
     ServiceManager({"NOTIFY_SOCKET": str(tmp_path / "gone")}).working()
 
 
-def test_one_that_does_not_read_is_not_waited_for(manager_socket):
+def test_unread_notification_does_not_block(manager_socket):
     manager = ServiceManager({"NOTIFY_SOCKET": manager_socket.getsockname()})
     for _ in range(10_000):
         manager.working()

@@ -18,5 +18,5 @@ from shared.xml_text import in_xml
         ("\U0001f692", "\U0001f692"),
     ],
 )
-def test_what_xml_has_no_place_for_is_marked(text: str, carried: str) -> None:
+def test_characters_invalid_in_xml_are_marked(text: str, carried: str) -> None:
     assert in_xml(text) == carried

@@ -48,7 +48,7 @@ def shown(script: Script, unit_id: str = "FF-01") -> DutyView:
     return view.duty
 
 
-def test_assignment_and_opening_confirm_nobody(
+def test_assignment_and_opening_confirm_no_member(
     script: Script,
 ) -> None:
     script.register("FF-04")

@@ -84,7 +84,7 @@ def test_member_without_answer_to_the_evacuation_is_overdue_again(
     assert again[0].text == "Person 1: PAR overdue, no answer, on duty for 5 min"
 
 
-def test_receipt_of_an_evacuation_confirms_nobody(script: Script) -> None:
+def test_receipt_of_an_evacuation_confirms_no_member(script: Script) -> None:
     script.act(SetAccountability(1200.0, 2400.0))
     order(script, CommandKind.EVACUATE)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)

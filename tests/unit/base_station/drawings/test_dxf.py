@@ -71,7 +71,9 @@ def test_without_a_layer_of_walls_every_line_is_one_and_it_is_noted() -> None:
         (b"999\nnothing", None, "cannot be read|does not say"),
     ],
 )
-def test_what_is_no_plan_is_refused(content: bytes, unit: LengthUnit | None, reason: str) -> None:
+def test_file_that_is_no_plan_is_refused(
+    content: bytes, unit: LengthUnit | None, reason: str
+) -> None:
     with pytest.raises(UserError, match=reason):
         read_drawing(content, Options(unit=unit))
 

@@ -93,6 +93,6 @@ def test_imdf_has_floors_by_level() -> None:
         (b"AC1032", "save it as DXF"),
     ],
 )
-def test_what_is_no_plan_is_refused(content: bytes, reason: str) -> None:
+def test_file_that_is_no_plan_is_refused(content: bytes, reason: str) -> None:
     with pytest.raises(UserError, match=reason):
         read_drawing(content, Options())

@@ -28,7 +28,7 @@ def test_a_large_picture_becomes_smaller_and_loses_its_metadata() -> None:
     assert b"taken at home" not in found.webp
 
 
-def test_what_is_transparent_is_paper() -> None:
+def test_transparent_pixels_are_paper() -> None:
     drawn = Image.new("RGBA", (100, 100), (0, 0, 0, 0))
     ImageDraw.Draw(drawn).rectangle((0, 0, 40, 40), fill="black")
     found = read_picture(saved(drawn))
@@ -64,6 +64,6 @@ def giant_png() -> bytes:
         (b"\x89PNG\r\n\x1a\n", "cannot be read"),
     ],
 )
-def test_what_is_no_picture_is_refused(content: bytes, reason: str) -> None:
+def test_file_that_is_no_picture_is_refused(content: bytes, reason: str) -> None:
     with pytest.raises(UserError, match=reason):
         read_picture(content)

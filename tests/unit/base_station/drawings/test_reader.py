@@ -58,9 +58,7 @@ def test_a_page_is_a_picture() -> None:
         (b"notes", 1, "no drawing that can be read"),
     ],
 )
-def test_what_cannot_be_read_is_refused_with_what_to_do(
-    content: bytes, page: int, reason: str
-) -> None:
+def test_unreadable_file_is_refused_with_the_remedy(content: bytes, page: int, reason: str) -> None:
     with pytest.raises(UserError, match=reason):
         read_drawing(content, Options(page=page))
 

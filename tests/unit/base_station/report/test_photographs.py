@@ -46,7 +46,7 @@ def bring(folder: ImportFolder) -> Bring:
     return bring_in
 
 
-def test_they_are_by_time_with_place_and_who_brought_them_in(
+def test_photographs_are_by_time_with_place_and_importing_user(
     folder: ImportFolder, bring: Bring
 ) -> None:
     rows = [bring(60), bring(0)]

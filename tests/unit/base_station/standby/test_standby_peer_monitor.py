@@ -107,7 +107,7 @@ def test_linked_units_are_counted(ends: Ends) -> None:
     assert ends.hearing.units == 0
 
 
-def test_station_that_said_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
+def test_station_that_announced_its_stop_is_awaited_half_as_long(ends: Ends) -> None:
     token = ends.speaker.declare_alive(key_of("b", "alive"))
     own = ends.speaker.declare_alive(key_of("a", "alive"))
     ends.beat()

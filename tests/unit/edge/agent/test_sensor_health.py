@@ -31,7 +31,7 @@ def reported(health: SensorHealth, imu: ImuBatch, at_once: int = 7) -> list[str]
 @pytest.mark.parametrize(
     ("spoilt", "word", "lasts_s"), [("stuck", "repeated", 1.02), ("unusable", "no usable", 1.01)]
 )
-def test_what_lasts_for_a_second_is_reported_once_and_again_when_it_comes_again(
+def test_fault_of_a_second_is_reported_once_and_again_when_it_recurs(
     spoilt: str, word: str, lasts_s: float
 ) -> None:
     health = SensorHealth()
@@ -71,9 +71,7 @@ def test_a_hole_in_time_is_reported_and_a_small_one_is_not(next_s: float, words:
         (slice(5, 6), "gyroscope"),
     ],
 )
-def test_what_hangs_while_the_other_sensor_tells_of_motion_is_reported_once(
-    hung: slice, sensor: str
-) -> None:
+def test_sensor_stuck_during_motion_is_reported_once(hung: slice, sensor: str) -> None:
     rows = moving()
     rows[150:, hung] = 1.0
     rows[200] = np.nan  # one that was lost begins anew
@@ -92,7 +90,7 @@ def test_a_coarse_sensor_that_lies_still_repeats_itself_and_is_well(hung: slice)
 
 
 @pytest.mark.parametrize("hung", [slice(0, 3), slice(3, 6)])
-def test_what_moved_in_a_hole_is_not_known(hung: slice) -> None:
+def test_motion_during_a_gap_is_unknown(hung: slice) -> None:
     """It lies as it did before, on a coarse sensor, and was turned while nobody saw it."""
     rows = 0.1 * np.random.default_rng(3).normal(size=(4 * RATE_HZ, 6))
     rows[:, hung] = 1.0

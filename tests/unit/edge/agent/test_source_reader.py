@@ -119,7 +119,7 @@ def test_a_source_that_fails_ends_with_the_reason(error):
     assert str(error) in reader.failure
 
 
-def test_a_source_that_hangs_holds_up_nobody():
+def test_hanging_source_delays_no_other():
     release = threading.Event()
 
     def script() -> Iterator[SensorBatch]:
@@ -144,7 +144,7 @@ LOW = BatterySample(1_000_000, 0.1)
 
 
 @pytest.mark.parametrize(("live", "t_ns"), [(True, LOW.t_ns), (False, 5 * NS_PER_S)])
-def test_what_is_read_beside_a_source_comes_with_its_next_batch(live: bool, t_ns: int):
+def test_auxiliary_readings_come_with_the_next_batch_of_the_source(live: bool, t_ns: int):
     source, beside = Scripted(lambda: iter([batch(5.0)]), live=live), FinishedSource(LOW)
     reader = SourceReader(source, SystemClock(), None, (beside,))
     (timed,) = everything(reader)

@@ -24,7 +24,7 @@ def test_the_hottest_of_the_air_is_published_with_all_of_them() -> None:
     )
 
 
-def test_one_that_has_ended_is_no_longer_the_hottest() -> None:
+def test_ended_sensor_is_no_longer_the_hottest() -> None:
     ambient = AmbientTemperature(1.0)
     ambient.push(AmbientSample(0, 300.0, "front"))
     found = ambient.push(AmbientSample(6 * NS_PER_S, 20.0, "back"))
@@ -43,7 +43,7 @@ def test_a_sensor_without_a_name_is_the_only_one() -> None:
 
 
 @pytest.mark.parametrize("degc", [math.nan, math.inf])
-def test_what_is_no_number_is_not_published(degc: float) -> None:
+def test_invalid_temperature_is_not_published(degc: float) -> None:
     assert AmbientTemperature(1.0).push(AmbientSample(0, degc, "front")) is None
     readings = CurrentReadings()
     readings.push("cpu", 0, degc)

@@ -58,7 +58,7 @@ def on_the_move(seed: int, sensors: SensorErrors) -> Simulation:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sensors", [CONSUMER_SENSORS, UNCALIBRATED_SENSORS])
-def test_what_a_rest_puts_right_of_a_start_on_the_move_is_no_step(sensors: SensorErrors) -> None:
+def test_correction_by_a_rest_after_a_start_in_motion_is_no_step(sensors: SensorErrors) -> None:
     leaps_m = []
     for seed in range(6):
         rows, t_s, places_m, truth_m = walked(on_the_move(seed, sensors))
@@ -77,7 +77,7 @@ def test_in_twenty_minutes_no_step_is_put_right_by_the_way_behind() -> None:
         assert worst_window_m(places_m, truth_m) < 0.25
 
 
-def test_what_is_stated_holds_how_far_the_path_walked_is_from_the_best_by_now() -> None:
+def test_stated_covariance_covers_the_difference_to_the_best_path() -> None:
     rows, t_s, places_m, _ = walked(on_the_move(1, UNCALIBRATED_SENSORS))
     stream = PositionPublisher(Stamper("u1", 1, SystemClock()), RATE_HZ)
     last = stream.push(rows, Timeline())[-1]

@@ -255,7 +255,7 @@ def test_a_mayday_that_is_being_called_as_the_source_fails_is_sent(tmp_path: Pat
     assert unit.station.calls() == [MAYDAY]
 
 
-def test_what_the_button_lacks_is_an_event_of_the_unit(tmp_path: Path) -> None:
+def test_fault_of_the_button_is_an_event_of_the_unit(tmp_path: Path) -> None:
     with running(tmp_path) as unit:
         unit.button.is_there = False
         until(

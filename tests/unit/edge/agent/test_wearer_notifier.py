@@ -173,7 +173,7 @@ def test_a_mayday_that_was_acknowledged_is_played_and_reported_once(rig: Rig) ->
     assert rig.outputs.shown == shown, "a repeat is the same notice, which is played once"
 
 
-def test_one_that_comes_after_the_mayday_was_cancelled_is_refused_and_silent(rig: Rig) -> None:
+def test_acknowledgement_after_the_cancelled_mayday_is_refused_silently(rig: Rig) -> None:
     call(rig, EventKind.MAYDAY, 7)
     call(rig, EventKind.MAYDAY_CANCELLED, 8)
     reply = rig.notifier.take_command(acknowledgement(7))

@@ -57,7 +57,7 @@ def station(network: Network) -> ZenohStation:
     return ZenohStation(UnitConnection("FF-01", (KNOWN,), None, discovers=True), network.find)
 
 
-def test_what_is_enrolled_is_tried_first_and_then_what_is_announced(
+def test_enrolled_endpoints_are_tried_before_announced_ones(
     station: ZenohStation, network: Network
 ) -> None:
     network.announced, network.answering = (FOUND,), {FOUND}
@@ -154,5 +154,5 @@ class TestSettings:
         found = unit_connection(settings)
         assert (found.connect, found.discovers) == ((MOVED,), True)
 
-    def test_it_is_off_unless_it_is_asked_for(self, enrolment: Path) -> None:
+    def test_discovery_is_off_by_default(self, enrolment: Path) -> None:
         assert not unit_connection(EdgeConfig("bench:1", enrolment=enrolment)).discovers

@@ -139,7 +139,7 @@ def test_impossible_sensor_errors_are_damage(line, reported, tmp_path):
         ("warmth", "to_degc = 300.0", "warmth.to_degc is not from -60 to 150"),
     ],
 )
-def test_what_no_table_is_like_is_damage(part, line, reported, tmp_path):
+def test_impossible_table_is_damage(part, line, reported, tmp_path):
     """A warmth that never was would be taken out of every sample."""
     file = tmp_path / "c.toml"
     write_calibration(whole_calibration(), file)

@@ -33,7 +33,7 @@ def test_the_gyroscope_s_bias_is_found_within_its_standard_deviation():
     assert np.sqrt(np.mean(np.square(off))) < 1.8
 
 
-def test_what_force_adds_to_the_rate_is_found():
+def test_sensitivity_of_the_rate_to_force_is_found():
     off = []
     for seed in SEEDS:
         unit = HandledUnit(seed)

@@ -167,7 +167,7 @@ def felt(duration_s: float, start_s: float, accel_mps2: float, gyro_radps: float
     [(0.15, 0.02, True), (0.3, 0.0, False), (0.0, 0.05, False)],
     ids=["noise", "shaken", "turned to and fro"],
 )
-def test_what_either_sensor_feels_is_no_rest(accel_mps2, gyro_radps, rests):
+def test_motion_of_either_sensor_is_no_rest(accel_mps2, gyro_radps, rests):
     finder = RestDetector()
     finder.push(felt(5.0, 0.0, accel_mps2, gyro_radps))
     assert bool(finder.rests) is rests
@@ -243,7 +243,7 @@ def test_samples_of_other_units_are_no_calibration():
         solved(step)
 
 
-def test_readings_in_one_plane_are_refused_in_words_though_nobody_checked_them():
+def test_unchecked_readings_in_one_plane_are_refused_with_a_reason():
     angle = np.linspace(0.0, 6.2, 200)
     level = 48.0 * np.column_stack((np.cos(angle), np.sin(angle), np.zeros(200)))
     none = np.zeros((200, 3))

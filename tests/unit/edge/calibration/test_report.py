@@ -103,7 +103,7 @@ def test_misalignment_is_reported_or_asked_for(std: float) -> None:
         ]
 
 
-def test_what_is_poor_is_to_be_done_again() -> None:
+def test_poor_calibration_has_to_be_repeated() -> None:
     assert "Poor: accelerometer off by 0.060 m/s2; do it again." in printed(
         Found(residual_mps2=0.06)
     )
@@ -119,6 +119,6 @@ def test_six_poses_without_a_residual_are_stated_to_have_none() -> None:
 @pytest.mark.parametrize(
     "out", ["boxes [new]/[red]FF-01.toml", f"{'deep/' * 30}FF-01.toml"], ids=["brackets", "long"]
 )
-def test_where_it_was_written_is_reported_whole(out: str) -> None:
+def test_path_of_the_file_is_reported_completely(out: str) -> None:
     reported = printed(Found(), out)
     assert f"Written to {out}; use it with `muster edge run --calibration {out}`." in reported

@@ -45,7 +45,7 @@ def fitted(shape: Shape, vectors: Floats, noise: float = 1e-6) -> SphereFit:
 
 @pytest.mark.parametrize("name", GAINS)
 @pytest.mark.parametrize("count", [9, 60])
-def test_what_lies_on_an_ellipsoid_tells_its_shape_and_centre(name: str, count: int) -> None:
+def test_points_on_an_ellipsoid_determine_its_shape_and_centre(name: str, count: int) -> None:
     shape, gain = GAINS[name]
     fit = fitted(shape, readings(gain, 1.0, directions(count)))
     assert fit.gain == pytest.approx(gain, abs=1e-9)

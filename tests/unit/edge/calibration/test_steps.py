@@ -125,7 +125,7 @@ def test_poses_that_are_less_than_ten_degrees_apart_are_one(apart_deg: float, po
     assert len(step.poses()) == poses
 
 
-def test_of_two_rests_in_one_direction_the_longer_counts() -> None:
+def test_longer_of_two_rests_in_one_direction_counts() -> None:
     step = PosesStep()
     bench = Bench(step)
     bench.lies(at_degrees(0.0), 3.0)
@@ -323,7 +323,7 @@ def test_ten_degrees_are_needed(span_degc: float, lacks: bool) -> None:
         assert bench.step.progress() == "9.7 of 10 degC"
 
 
-def test_it_may_cool_down_as_well() -> None:
+def test_warm_up_step_accepts_cooling_down() -> None:
     bench = Bench(WarmUpStep())
     bench.lies(Z, 100.0, degc=(35.0, 22.0))
     assert bench.step.missing() is None
@@ -345,7 +345,7 @@ def test_a_unit_that_was_moved_while_it_warmed_is_reported_so() -> None:
     )
 
 
-def test_what_was_received_without_a_temperature_does_not_count() -> None:
+def test_samples_without_a_temperature_do_not_count() -> None:
     step = WarmUpStep()
     bench = Bench(step)
     bench.lies(Z, 30.0)

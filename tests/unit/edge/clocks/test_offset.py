@@ -60,7 +60,7 @@ def test_an_exchange_that_took_less_than_no_time_is_not_used(wrong: tuple[float,
     assert offset.at(0) is None
 
 
-def test_one_that_was_sent_before_it_was_received_is_not_used() -> None:
+def test_exchange_with_a_negative_delay_is_not_used() -> None:
     asked, received, sent, answered = exchange(0.0)
     offset = ClockOffsetFilter()
     assert not offset.note(Exchange(asked, received + 1_000_000, sent, answered))
@@ -92,7 +92,7 @@ def test_impossible_offset_is_accepted_the_third_time_in_a_row(settled: ClockOff
     assert settled.note(exchange(16.0, offset_s=wrong_s))
 
 
-def test_it_learns_how_the_clocks_drift_and_is_less_sure_with_time() -> None:
+def test_filter_estimates_the_drift_and_its_uncertainty_grows_with_time() -> None:
     offset, drift = ClockOffsetFilter(), 3e-5
     for number in range(60):
         at_s = 15.0 * number
@@ -162,7 +162,7 @@ def test_half_the_round_trip_is_how_far_an_exchange_can_be_off(
     assert settled.note(exchange(10.0, 0.5, 0.5, OFFSET_S + off_s)) is is_used
 
 
-def test_a_way_that_was_slow_there_and_is_slow_back_now_is_possible() -> None:
+def test_delay_that_changes_its_direction_is_possible() -> None:
     """An error common to all exchanges is unobservable."""
     offset = ClockOffsetFilter()
     for number in range(300):

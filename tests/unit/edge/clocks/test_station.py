@@ -33,7 +33,7 @@ def watched(clock: StationClock, station: Station, seconds: int) -> list[float]:
     return station.asked_s
 
 
-def test_it_asks_once_a_second_until_it_has_eight_answers_and_then_now_and_then() -> None:
+def test_requests_are_sent_each_second_until_eight_answers_and_then_rarely() -> None:
     machine = ManualClock()
     asked_s = watched(StationClock(machine), Station(machine), 40)
     assert asked_s == pytest.approx([0, 1, 2, 3, 4, 5, 6, 7, 8, 23, 38])

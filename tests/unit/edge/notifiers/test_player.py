@@ -135,7 +135,7 @@ def test_an_output_that_fails_is_reported_once_and_tried_again(
     until(lambda: player.take_played() == (EVACUATE,))
 
 
-def test_it_ends_at_once_and_leaves_the_output_silent(output) -> None:
+def test_stopped_player_ends_at_once_with_a_silent_output(output) -> None:
     output.hold.clear()
     player = NoticePlayer("led:red", output)
     player.start()

@@ -59,7 +59,7 @@ def test_a_long_sound_is_interrupted_before_the_card_has_taken_it(
     assert not playing.is_alive()
 
 
-def test_it_plays_on_the_device_that_is_set(
+def test_sound_is_played_on_the_configured_device(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reported = tmp_path / "said"

@@ -45,7 +45,7 @@ def survey(
     return {finding.subject: finding for finding in found.findings()}
 
 
-def test_what_a_unit_does_not_have_is_a_warning_with_what_it_costs() -> None:
+def test_missing_equipment_is_a_warning_with_its_consequence() -> None:
     found = survey(BARE)
     assert set(found) == {"temperature", "battery", "satellites", "mayday button"}
     for finding in found.values():

@@ -76,7 +76,7 @@ def test_a_unit_that_has_everything_is_ready_though_its_wearer_walks() -> None:
     assert check.step(2 * END_NS) is None, "said once"
 
 
-def test_what_is_missing_is_stated_the_gravest_first() -> None:
+def test_missing_items_are_reported_by_severity() -> None:
     def full_disk() -> Iterator[CheckFinding]:
         yield CheckFinding("disk", Severity.WARNING, "1 GB free", "make room")
 
@@ -101,7 +101,7 @@ def test_a_source_that_gives_nothing_is_stated() -> None:
     assert found[0].level is PreflightLevel.FAILED
 
 
-def test_what_comes_right_later_is_struck_off_and_nothing_is_added() -> None:
+def test_items_that_recover_are_removed_and_none_is_added() -> None:
     check = started()
     check.push(samples(SURVEY_S, *OTHERS[1:]))
     assert subjects(at_end(check)) == ["temperature front"]

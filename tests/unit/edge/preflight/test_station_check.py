@@ -96,7 +96,7 @@ def test_a_station_that_tells_no_time_is_a_warning(
 
 
 def test_no_station_and_no_bus_have_failed_with_the_reason(router: MemoryRouter) -> None:
-    (nobody,) = findings(router, SystemClock())
-    assert (nobody.level, nobody.text) == (Severity.FAILED, "nothing listens")
+    (no_listener,) = findings(router, SystemClock())
+    assert (no_listener.level, no_listener.text) == (Severity.FAILED, "nothing listens")
     (no_bus,) = findings(None, SystemClock())
     assert (no_bus.level, no_bus.text) == (Severity.FAILED, "the bus cannot be opened")

@@ -154,7 +154,7 @@ def test_unreadable_message_costs_nothing_else(unit: Unit) -> None:
     assert unit.listener.not_understood == 2
 
 
-def test_what_comes_faster_than_it_is_taken_is_left_out_the_newest_first(unit: Unit) -> None:
+def test_batches_faster_than_their_consumer_are_dropped_newest_first(unit: Unit) -> None:
     payload = encode(raw(1))
     for _ in range(4096):
         unit.publishes(payload)
@@ -280,14 +280,14 @@ def test_a_unit_that_is_silent_for_a_while_has_not_ended_its_run(
     assert len(list(source.batches())) == 2
 
 
-def test_of_a_run_that_was_joined_in_its_middle_nothing_before_is_asked_for(unit: Unit) -> None:
+def test_samples_before_joining_a_run_are_not_requested(unit: Unit) -> None:
     unit.describes()
     unit.says(raw(900), raw(1, boot_id=8))
     assert len(list(unit.followed().batches())) == 1
     assert unit.asked == []
 
 
-def test_what_was_lost_comes_in_its_place_and_is_left_out_when_it_comes_late(unit: Unit) -> None:
+def test_lost_batch_is_inserted_in_order_and_dropped_when_late(unit: Unit) -> None:
     unit.describes()
     unit.journal = lambda first, last: [piece(first, last, raw(2), raw(3))]
     unit.says(raw(1), raw(4), raw(3), raw(4), raw(5), raw(1, boot_id=8))
@@ -323,7 +323,7 @@ def test_before_the_unit_is_received_there_is_no_sensor() -> None:
         _ = BusSource(U).description
 
 
-def test_of_two_sensors_what_was_lost_of_either_is_fetched_once(unit: Unit) -> None:
+def test_lost_batches_of_two_sensors_are_fetched_once(unit: Unit) -> None:
     """Two of the left and one of the right were lost; another message of the right came."""
     names = ["left", "right", "left", "right", "left", "right", "left", "right"]
     messages = [

@@ -86,7 +86,7 @@ def test_workers_go_in_after_gps_outside_and_last_ten_minutes(name: str) -> None
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [s.name for s in SCENARIOS if s.building])
-def test_nobody_walks_through_walls(name: str) -> None:
+def test_simulated_paths_cross_no_wall(name: str) -> None:
     simulation = open_simulation(name)
     t_s = np.arange(0.0, min(300.0, simulation.duration_s), 0.2)
     path = simulation.truth(t_s).position_n_m
@@ -108,7 +108,7 @@ def test_the_stairs_lead_to_the_upper_floor_and_back() -> None:
     assert heights - heights[0] == pytest.approx([0.0, -3.2, 0.0], abs=0.15)
 
 
-def test_the_one_who_goes_down_does_not_move_again() -> None:
+def test_fallen_wearer_does_not_move_again() -> None:
     simulation = open_simulation("goes-down?seed=3")
     lying_s = start_of(simulation, Activity.LYING)
     assert 15.0 < lying_s < 25.0
@@ -133,7 +133,7 @@ def test_the_heat_passes_every_threshold_and_falls_again() -> None:
     assert heat[190] < 60.0
 
 
-def test_who_comes_from_farther_away_meets_everything_later() -> None:
+def test_longer_approach_delays_all_events() -> None:
     near, far = open_simulation("goes-down"), open_simulation("goes-down?from=-38,11")
     began = far.truth(np.array([0.0])).position_n_m[0]
     assert began[:2] == pytest.approx([-38.0, 11.0], abs=0.5)
@@ -290,7 +290,9 @@ def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
 
 
 @pytest.mark.parametrize("leg", [Wait(60.0), Kneel(30.0), Sit(90.0)], ids=["wait", "kneel", "sit"])
-def test_anyone_lingers_moves_his_foot_and_gets_up_where_he_was(leg: Wait | Kneel | Sit) -> None:
+def test_lingering_wearer_moves_the_foot_and_gets_up_at_the_same_place(
+    leg: Wait | Kneel | Sit,
+) -> None:
     simulation, ends = ends_of(Stand(1.0), leg, Stand(2.0))
     t_s = np.arange(0.0, simulation.duration_s, 0.01)
     motion = simulation.truth(t_s)

@@ -19,7 +19,7 @@ def placed(clock: DeviceClock, device_ns: np.ndarray, arrival_ns: np.ndarray) ->
 
 @pytest.mark.slow
 @pytest.mark.parametrize("drift", [-1e-4, 0.0, 1e-4])
-def test_it_follows_drift_through_delays(drift: float) -> None:
+def test_clock_follows_drift_through_delays(drift: float) -> None:
     """Ten minutes on a radio that delays by up to 80 ms and once holds everything for 3 s."""
     rng = np.random.default_rng(3)
     device_ns = np.arange(0, 600 * S, STEP)

@@ -79,7 +79,7 @@ def test_a_battery_of_a_sensor_has_its_name() -> None:
 
 
 @pytest.mark.parametrize("live", [False, True])
-def test_one_that_fails_takes_no_other_with_it(live: bool) -> None:
+def test_failing_sensor_stops_no_other(live: bool) -> None:
     members = {"left": Scripted(failing, live=live), "right": Scripted(every_s(0.0, 5), live=live)}
     group = SensorGroup(members)
     assert sorted(played(group)) == [("left", 0.0), *(("right", float(n)) for n in range(5))]

@@ -121,7 +121,7 @@ def test_a_range_is_as_unsure_as_a_body_in_the_way_makes_it(
         "tcp:host:80/door",
     ],
 )
-def test_what_is_no_reader_is_refused(text: str) -> None:
+def test_device_that_is_no_reader_is_refused(text: str) -> None:
     with pytest.raises(ConfigError, match="tcp:HOST:PORT"):
         open_reader(text)
 
@@ -200,7 +200,7 @@ def test_a_reader_that_is_gone_is_opened_again(slashes: str) -> None:
     assert 0 < found[0][1].t_ns <= time.monotonic_ns()
 
 
-def test_that_a_reader_is_gone_is_reported_once_until_it_is_back(caplog) -> None:
+def test_missing_reader_is_reported_once_until_it_returns(caplog) -> None:
     reader = SightingReader("/dev/nowhere", SystemClock())
     cable_is_out = FileNotFoundError(2, "No such file or directory")
     reader.on_close(cable_is_out)

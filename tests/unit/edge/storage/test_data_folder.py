@@ -54,7 +54,7 @@ def test_a_unit_finds_its_folder_as_it_left_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("left", [b"", b"\0\0\0\0\0", b"\xff\xff"])
-def test_what_a_power_cut_leaves_of_its_name_is_no_other_unit(tmp_path: Path, left: bytes) -> None:
+def test_truncated_name_after_a_power_cut_is_no_other_unit(tmp_path: Path, left: bytes) -> None:
     """The name is written at the first start alone, and some file systems keep only its length."""
     keep_something(tmp_path / "anna")
     (tmp_path / "anna" / "unit").write_bytes(left)
@@ -66,7 +66,7 @@ def test_what_a_power_cut_leaves_of_its_name_is_no_other_unit(tmp_path: Path, le
     assert (tmp_path / "anna" / "unit").read_text() == "anna\n"
 
 
-def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_stated(tmp_path: Path) -> None:
+def test_data_of_another_unit_is_moved_aside_and_not_served(tmp_path: Path) -> None:
     keep_something(tmp_path / "anna")
     for number in (1, 2):  # copied twice
         shutil.copytree(tmp_path / "anna", tmp_path / "bert", dirs_exist_ok=True)
@@ -117,7 +117,7 @@ def test_a_note_that_cannot_be_written_or_read_stops_no_unit(tmp_path: Path) -> 
     folder.close()
 
 
-def test_what_cannot_be_set_aside_is_not_used(
+def test_data_that_cannot_be_moved_aside_is_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep_something(tmp_path / "anna")

@@ -61,14 +61,14 @@ def test_other_devices_are_closed_again(devices, opened) -> None:
     assert not other.opened
 
 
-def test_of_devices_of_one_name_that_with_the_key_is_taken(devices, opened) -> None:
+def test_device_with_the_key_is_chosen_among_equal_names(devices, opened) -> None:
     devices.plug_in(1, keys=("KEY_A",))
     right = devices.plug_in(2, keys=("KEY_VOLUMEUP", "KEY_A"))
     opened("AB Button", key="KEY_VOLUMEUP")
     assert right.opened
 
 
-def test_of_two_that_may_be_meant_none_is_taken(devices, opened) -> None:
+def test_ambiguous_device_is_not_chosen(devices, opened) -> None:
     one, other = devices.plug_in(1), devices.plug_in(2)
     reported = refusal(opened, "AB Button", key="KEY_POWER")
     assert "there are 2 input devices named AB Button" in reported
@@ -152,7 +152,7 @@ def test_other_keys_and_repeats_are_nothing(devices, opened) -> None:
 
 
 @pytest.mark.parametrize("is_pressed", [True, False])
-def test_where_the_kernel_has_dropped_events_the_state_counts(devices, opened, is_pressed) -> None:
+def test_state_of_the_key_counts_after_dropped_events(devices, opened, is_pressed) -> None:
     """Events before the loss are reported; the remaining ones are a partial event."""
     device = devices.plug_in(1)
     button = opened("AB Button")
@@ -165,7 +165,7 @@ def test_where_the_kernel_has_dropped_events_the_state_counts(devices, opened, i
     assert [one.is_pressed for one in button.read()] == [True, is_pressed]
 
 
-def test_what_is_read_late_has_the_times_at_which_it_was(devices, opened, monkeypatch) -> None:
+def test_late_events_keep_their_times(devices, opened, monkeypatch) -> None:
     monkeypatch.setattr(evdev_button, "_set_monotonic", lambda device: True)
     device = devices.plug_in(1)
     button = opened("AB Button")

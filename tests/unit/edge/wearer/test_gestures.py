@@ -83,7 +83,9 @@ def kinds(found: list[Gesture]) -> list[str]:
     ],
 )
 @pytest.mark.parametrize("look_every_ms", [0, 7])
-def test_what_presses_mean(presses: Presses, meant: list[str], look_every_ms: int) -> None:
+def test_presses_are_recognised_as_gestures(
+    presses: Presses, meant: list[str], look_every_ms: int
+) -> None:
     assert kinds(gestures_of(presses, look_every_ms)) == meant
 
 
@@ -182,7 +184,7 @@ class TestAButtonThatComesAndGoes:
         assert self.advance(30.0) == []
         assert not self.recognizer.is_undecided
 
-    def test_one_that_is_found_pressed_is_held_from_then_on(self) -> None:
+    def test_button_found_pressed_counts_as_held_from_then_on(self) -> None:
         self.state(0.0, is_pressed=True)
         self.lose(1.0)
         self.state(3.0, is_pressed=True)
@@ -199,7 +201,7 @@ class TestAButtonThatComesAndGoes:
         self.state(61.0, is_pressed=True)
         assert self.advance(64.0) == [MAYDAY]
 
-    def test_one_that_comes_back_released_is_as_new(self) -> None:
+    def test_button_that_returns_released_starts_anew(self) -> None:
         self.state(0.0, is_pressed=True)
         assert self.lose(10.0) == [MAYDAY]
         self.state(20.0, is_pressed=False)
@@ -215,7 +217,7 @@ class TestAButtonThatComesAndGoes:
         assert self.advance(2.0) == [ACKNOWLEDGE]
 
 
-def test_it_is_undecided_until_a_gesture_has_come_or_cannot() -> None:
+def test_recogniser_is_undecided_until_a_gesture_is_complete_or_impossible() -> None:
     recognizer = GestureRecognizer()
     seen = []
     for t_ms, is_pressed in ((0, True), (3100, True), (3200, False), (3300, False)):

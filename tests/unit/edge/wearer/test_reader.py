@@ -61,7 +61,7 @@ def test_a_button_that_goes_is_reported_once_and_read_again(button: ScriptedButt
     assert button.closed >= 3
 
 
-def test_one_that_has_been_read_for_a_while_is_reported_anew(button: ScriptedButton) -> None:
+def test_fault_after_a_time_of_reading_is_reported_again(button: ScriptedButton) -> None:
     for _ in range(2):
         button.is_there = False
         assert "there is no button" in faults(button)[0]
@@ -138,6 +138,6 @@ def test_at_the_end_a_stuck_button_is_not_waited_for(monkeypatch) -> None:
     assert button.closed == 1
 
 
-def test_one_that_was_never_started_is_closed_at_once(monkeypatch) -> None:
+def test_unstarted_reader_is_closed_at_once(monkeypatch) -> None:
     monkeypatch.setattr(reader_module, "_DECIDED_S", 1e9)
     ScriptedButton().reader.close()

@@ -15,7 +15,7 @@ from shared.mcap_log.durable_file import DurableFile
 from tests.rig.small_log import KEY, T0_NS, as_others_read
 
 
-def test_what_a_disk_takes_and_then_drops_is_written_again(
+def test_data_lost_by_the_disk_is_written_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A system drops what it could not bring to the disk, and says so once."""
@@ -41,7 +41,7 @@ def test_what_a_disk_takes_and_then_drops_is_written_again(
     assert [message.data for *_, message in as_others_read(path)] == [b"1", b"mayday", b"3", b"4"]
 
 
-def test_what_is_written_in_parts_and_then_dropped_is_written_again(
+def test_lost_partial_writes_are_written_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = DurableFile(tmp_path / "file")

@@ -20,7 +20,7 @@ from shared.mcap_log.segment_file import SegmentFile
 from tests.rig.small_log import KEY, T0_NS
 
 
-def test_what_is_being_written_can_be_read_up_to_the_last_flush(tmp_path: Path) -> None:
+def test_open_segment_is_readable_up_to_the_last_flush(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"1", urgent=True)
     writer.write(T0_NS + 1, KEY, b"2")
@@ -68,7 +68,7 @@ def test_records_of_one_time_on_both_sides_of_a_border_are_found(tmp_path: Path)
     assert list(read_log(tmp_path, t_ns + 1)) == list(read_log(tmp_path, None, t_ns)) == []
 
 
-def test_what_the_disk_does_not_open_keeps_nobody_from_the_rest(tmp_path: Path) -> None:
+def test_unopenable_segment_does_not_prevent_reading_the_others(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     for number in range(3):
         writer.write(T0_NS + number * NS_PER_S, KEY, bytes([number]))

@@ -37,7 +37,7 @@ def test_a_recovery_that_was_cut_off_goes_on(tmp_path: Path) -> None:
     assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, path.name + ".torn"]
 
 
-def test_of_a_segment_that_is_torn_again_and_again_every_original_is_kept(tmp_path: Path) -> None:
+def test_every_original_of_a_repeatedly_truncated_segment_is_kept(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"1", urgent=True)
     [path] = segment_paths(tmp_path)
@@ -70,7 +70,7 @@ def test_a_recovery_that_was_cut_off_goes_on_with_the_last_of_several_originals(
     assert on_disk(tmp_path) == [b"\0", b"\1", b"\2"]
 
 
-def test_what_was_begun_of_a_segment_that_is_there_does_not_bring_back_what_was_torn(
+def test_unfinished_repair_does_not_replace_an_existing_segment(
     tmp_path: Path,
 ) -> None:
     """Forgetting was cut off: what was mended before, and perhaps forgotten in, stays."""
@@ -99,7 +99,7 @@ def test_a_segment_that_was_moved_away_does_not_come_back(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("torn_off", "reported"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")]
 )
-def test_what_a_tear_cost_is_stated(tmp_path: Path, torn_off: bytes, reported: str) -> None:
+def test_loss_by_truncation_is_reported(tmp_path: Path, torn_off: bytes, reported: str) -> None:
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"1", urgent=True)
     [path] = segment_paths(tmp_path)
@@ -131,7 +131,7 @@ def test_the_times_of_a_chunk_are_those_of_what_is_in_it(tmp_path: Path, half: i
     assert chunk.record in original
 
 
-def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) -> None:
+def test_damage_before_the_truncation_is_reported(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     for number in range(2):
         writer.write(T0_NS + number, KEY, bytes([number]), urgent=True)

@@ -18,7 +18,7 @@ from shared.mcap_log import (
 from tests.rig.small_log import KEY, T0_NS, as_others_read, on_disk
 
 
-def test_of_a_segment_from_which_all_is_taken_an_empty_one_is_left(tmp_path: Path) -> None:
+def test_segment_without_remaining_records_stays_as_an_empty_one(tmp_path: Path) -> None:
     """Its name stays, and with it what stands before and behind it."""
     writer = SegmentWriter(tmp_path)
     for number in range(3):
@@ -35,7 +35,7 @@ def test_of_a_segment_from_which_all_is_taken_an_empty_one_is_left(tmp_path: Pat
     assert as_others_read(middle) == []
 
 
-def test_who_reads_a_segment_while_it_is_written_anew_has_it_as_it_was(tmp_path: Path) -> None:
+def test_open_reader_sees_the_segment_before_its_rewrite(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path, SegmentPolicy(chunk_bytes=10))
     for number in range(3):
         writer.write(T0_NS + number, KEY, bytes([number]))
@@ -49,7 +49,7 @@ def test_who_reads_a_segment_while_it_is_written_anew_has_it_as_it_was(tmp_path:
     assert on_disk(tmp_path) == [b"anew"] * 3
 
 
-def test_what_is_there_for_other_programs_stays_in_a_segment_that_is_written_anew(
+def test_topics_for_other_programs_are_kept_in_a_rewrite(
     tmp_path: Path,
 ) -> None:
     writer = SegmentWriter(tmp_path)

@@ -30,7 +30,7 @@ def test_a_record_is_on_the_disk_half_a_second_of_log_time_later(tmp_path: Path)
     assert on_disk(tmp_path) == [b"1", b"2"]
 
 
-def test_what_is_ended_is_let_go_of_and_nobody_elses_to_read(tmp_path: Path) -> None:
+def test_ended_segment_is_closed_and_private(tmp_path: Path) -> None:
     """A station runs for months, and its log says where people were."""
     writer = SegmentWriter(tmp_path)
     for number in range(3):
@@ -80,7 +80,7 @@ def test_segments_end_by_time_and_are_reported_of(tmp_path: Path) -> None:
     assert on_disk(tmp_path) == [bytes([second]) for second in range(25)]
 
 
-def test_what_comes_at_once_is_cut_into_chunks(tmp_path: Path) -> None:
+def test_burst_of_records_is_split_into_chunks(tmp_path: Path) -> None:
     """A flipped bit costs a chunk."""
     writer = SegmentWriter(tmp_path, SegmentPolicy(chunk_bytes=4096))
     for number in range(100):

@@ -41,7 +41,7 @@ def test_each_record_comes_once_and_in_order(tmp_path: Path, tail: LogTail) -> N
     assert numbers(tail) == [10, 11]
 
 
-def test_it_begins_with_the_newest_segment_and_goes_on_to_the_following(
+def test_tail_starts_with_the_newest_segment_and_continues_to_the_next(
     tmp_path: Path, tail: LogTail
 ) -> None:
     writer = SegmentWriter(tmp_path)

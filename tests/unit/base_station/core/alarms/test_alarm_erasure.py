@@ -42,7 +42,7 @@ def test_alarm_raised_again_by_another_wearer_keeps_nothing_of_the_erased_one(
     assert reported == texts | {20: "(forgotten) may have fallen"}
 
 
-def test_alarms_and_notes_about_an_incident_after_its_end_name_nobody(
+def test_alarms_and_notes_after_the_end_of_an_incident_contain_no_name(
     tmp_path: Path,
 ) -> None:
     ana = Erasure(
@@ -118,16 +118,16 @@ def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bo
 OF_JO = Assign("FF-01", "p", 'Jo "Mac" Neil', "E 1", "Nozzle")
 OF_MAX = Assign("Max", "p", "Max", "E 1", "")
 OF_EVE = Assign("FF-02", "p-eve", "Eve", "E 1", "Nozzle")
-NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
+ERASED_PERSON = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
 @pytest.mark.parametrize(
     ("name", "done", "left"),
     [
-        ('Jo "Mac" Neil', OF_JO, replace(OF_JO, **NOBODY)),
+        ('Jo "Mac" Neil', OF_JO, replace(OF_JO, **ERASED_PERSON)),
         ("Neil\\Jo", ResolveAlarm("a", "met neil\\jo"), ResolveAlarm("a", f"met {ERASED_TEXT}")),
         ("Note", ResolveAlarm("a", "Note is well"), ResolveAlarm("a", f"{ERASED_TEXT} is well")),
-        ("Max", OF_MAX, replace(OF_MAX, **NOBODY)),
+        ("Max", OF_MAX, replace(OF_MAX, **ERASED_PERSON)),
         ("Max", OF_EVE, OF_EVE),
     ],
 )
@@ -165,6 +165,6 @@ def test_audit_of_an_erased_incident_keeps_no_crew_and_role_of_wearers(
             forget_in(session, ana)
         with store.read() as session:
             stated = {one.t_ns: one.detail for one in session.query(AuditEntry)}
-    nobody = replace(worn, person_id=ERASED_TEXT, **NOBODY)
-    gone = msgspec.json.encode(nobody).decode()
+    erased = replace(worn, person_id=ERASED_TEXT, **ERASED_PERSON)
+    gone = msgspec.json.encode(erased).decode()
     assert stated == {10: detail, 20: gone, 30: detail}

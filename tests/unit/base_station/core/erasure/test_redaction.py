@@ -250,7 +250,7 @@ INCIDENT = Erasure(
         (350, "anna", 250, ERASED_TEXT),
     ],
 )
-def test_alarms_and_notes_about_an_incident_name_nobody_after_it(
+def test_alarms_and_notes_about_an_erased_incident_contain_no_name(
     t_ns: int, unit_id: str, raised_ns: int, left: str
 ) -> None:
     redact = Redactor(msgspec.structs.replace(INCIDENT, about_until_ns=300), CaptureClocks())
@@ -278,7 +278,7 @@ def test_alarms_and_notes_about_an_incident_name_nobody_after_it(
         (350, b'{"text": "{person p1} may have fallen"}', False),
     ],
 )
-def test_what_consoles_were_shown_goes_where_they_showed_who_is_forgotten(
+def test_console_snapshots_that_show_an_erased_person_are_removed(
     t_ns: int, shown: bytes, stays: bool
 ) -> None:
     person = Erasure(

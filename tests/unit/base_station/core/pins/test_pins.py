@@ -174,7 +174,7 @@ def test_removal_of_a_pin_keeps_pins_with_the_same_prefix(walk: Walk) -> None:
     assert list(walk.script.pipeline.state.site.pins) == ["p10"]
 
 
-def test_contradicting_pin_is_kept_and_moves_nobody(walk: Walk) -> None:
+def test_contradicting_pin_is_kept_and_moves_no_member(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 100.0)
     before = walk.now_off_m("FF-01")
     trail = walk.trail("FF-01")

@@ -85,7 +85,7 @@ class Wearer:
         return fused
 
 
-def test_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
+def test_floor_that_the_path_contradicts_is_kept_and_moves_no_member() -> None:
     """A click while another floor was shown puts nobody between two floors."""
     wearer = Wearer()
     wearer.start()

@@ -121,7 +121,7 @@ def test_number_of_pins_is_bounded_by_what_can_be_solved(monkeypatch: pytest.Mon
     assert [type(one) for one in walk.script.outputs].count(Refused) == 1
 
 
-def test_common_start_without_room_for_all_places_nobody(
+def test_common_start_without_room_for_all_is_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("base_station.core.pins.pin_registry.MAX_PINS", 2)

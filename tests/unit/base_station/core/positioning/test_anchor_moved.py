@@ -127,7 +127,7 @@ def test_places_of_the_frame_stay_on_the_earth() -> None:
         assert (*move.apply(north_m, east_m), move.down_m) == pytest.approx(expected, abs=0.03)
 
 
-def test_anchor_on_the_other_hemisphere_moves_nobody() -> None:
+def test_anchor_on_the_other_hemisphere_moves_no_member() -> None:
     script = anchored()
     set_anchor(script, SITE)
     walk(script, range(100))

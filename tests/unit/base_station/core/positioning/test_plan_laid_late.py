@@ -92,7 +92,7 @@ def test_plan_without_a_known_place_is_not_used(script: Outside) -> None:
         assert script.off_m(one) < 3.0
 
 
-def test_plan_without_a_place_does_not_tell_who_is_inside(script: Outside) -> None:
+def test_plan_without_a_place_locates_no_member_inside(script: Outside) -> None:
     elsewhere = b"[900,0],[940,0],[940,30],[900,30],[900,0]"
     script.act(SetPlan(PLAN.replace(b"[0,0],[40,0],[40,30],[0,30],[0,0]", elsewhere)))
     script.walk(1)
@@ -102,7 +102,7 @@ def test_plan_without_a_place_does_not_tell_who_is_inside(script: Outside) -> No
     assert script.unit(A).place.inside_since_ns is None
 
 
-def test_walls_of_a_plan_without_a_place_hold_nobody(script: Outside) -> None:
+def test_walls_of_a_plan_without_a_place_confine_no_member(script: Outside) -> None:
     script.act(SetPlan(plan_path().read_bytes()))
     begun = Outside()
     begun.act(SetPlan(plan_path().read_bytes()))

@@ -116,7 +116,7 @@ def test_newest_report_counts_and_a_removed_one_does_not(script: Script) -> None
     )
 
 
-def test_backfilled_positions_of_before_move_nobody_back(script: Script) -> None:
+def test_backfilled_earlier_positions_move_no_member_back(script: Script) -> None:
     pin(script)
     walked = script.now_s
     script.now_s = walked - SILENT_S / 2

@@ -63,7 +63,7 @@ def of_place(aside_m: float) -> Wrong:
     [of_time(86_400.0), of_time(10.0), of_time(-86_400.0), of_place(30.0), of_place(2e6)],
     ids=["a day ahead", "ten seconds ahead", "a day ago", "aside", "far aside"],
 )
-def test_one_wrong_position_moves_nobody_and_stops_nothing(wrong: Wrong) -> None:
+def test_one_wrong_position_moves_no_member_and_stops_nothing(wrong: Wrong) -> None:
     script = Script()
     for true_north_m, fused in walk(script, wrong):
         if script.now_s > 20.0:

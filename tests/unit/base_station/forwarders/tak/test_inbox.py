@@ -147,7 +147,7 @@ def test_own_people_and_distant_ones_are_left_out() -> None:
     assert set(taken.markers) == {"county/near"}, "without an anchor nobody knows where it is"
 
 
-def test_clock_ahead_makes_nobody_fresher() -> None:
+def test_clock_ahead_does_not_extend_the_validity() -> None:
     taken = RecordingInbox()
     taken.push(cot_event("p", time="2023-11-14T23:13:20.000Z", stale="2023-11-14T23:14:20Z"))
     marker = taken.markers["county/p"]

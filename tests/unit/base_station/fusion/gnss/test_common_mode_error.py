@@ -142,7 +142,7 @@ def test_correction_worse_than_the_receiver_makes_no_fix_worse() -> None:
     assert common_mode_error.correct(fix_at(13.0, 8.0), 0) == fix_at(13.0, 8.0)
 
 
-def test_one_outlying_fix_moves_nobody() -> None:
+def test_one_outlying_fix_moves_no_member() -> None:
     common_mode_error = after(300.0)
     before = common_mode_error.correct(fix_at(0.0, 0.0), 301 * NS_PER_S)
     common_mode_error.update(301 * NS_PER_S, (60.0, 60.0), STD_M, 0.3)

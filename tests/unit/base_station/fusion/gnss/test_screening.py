@@ -226,7 +226,7 @@ def test_fix_before_any_message_of_its_unit_may_be_of_the_future(script: Script)
     assert script.fused[-1].since_gps_s == 20.0
 
 
-def test_bad_fixes_are_counted_by_reason_and_nobody_jumps(script: Script) -> None:
+def test_bad_fixes_are_counted_by_reason_and_cause_no_jump(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     for _ in range(30):
         script.wait(1, lambda: script.position(U, 0.0, 0.0))
@@ -275,7 +275,7 @@ def test_positions_work_in_metres_without_an_anchor(script: Script) -> None:
     assert not_used(script) == {"the site has no anchor": 1}
 
 
-def test_first_good_fix_anchors_an_unplaced_site_and_moves_nobody(
+def test_first_good_fix_anchors_an_unplaced_site_and_moves_no_member(
     script: Script,
 ) -> None:
     script.wait(3, lambda: script.position(U, 2.0, 1.0))

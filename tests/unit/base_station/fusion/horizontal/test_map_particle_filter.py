@@ -38,7 +38,7 @@ def walked_north(east_m: float, std_m: float) -> MapParticleFilter:
     return cloud
 
 
-def test_nobody_walks_with_a_shoulder_in_the_wall() -> None:
+def test_particles_keep_half_a_body_width_from_a_wall() -> None:
     cloud = walked_north(0.4, 0.25)
     mean, covariance = cloud.moments()
     assert 0.58 < mean[1] < 0.8

@@ -136,9 +136,9 @@ def test_likelihood_of_a_window_without_any_is_spread_evenly() -> None:
     last = MotionWindow([MotionStep(0.5, 0.0, 0.5, False, 0, 0.0)] * 4)
     last.set_log_likelihood(-8.0)
     assert [move.log_likelihood for move in last.save()] == [-2.0] * 4
-    nobody = MotionWindow([])
-    nobody.set_log_likelihood(-8.0)
-    assert nobody.save() == []
+    empty = MotionWindow([])
+    empty.set_log_likelihood(-8.0)
+    assert empty.save() == []
 
 
 def test_restored_filter_compares_its_cloud_with_a_changed_plan() -> None:

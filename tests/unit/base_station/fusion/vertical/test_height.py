@@ -69,7 +69,7 @@ def test_slow_error_of_fixes_fades_to_its_prior() -> None:
 
 
 @pytest.mark.parametrize(("off_m", "is_taken"), [(14.0, True), (-14.0, True), (16.0, False)])
-def test_impossible_height_of_a_fix_moves_nobody(off_m: float, is_taken: bool) -> None:
+def test_impossible_height_of_a_fix_moves_no_member(off_m: float, is_taken: bool) -> None:
     height = at(0.0, 0.5)
     height.update_gnss(off_m, 5.0)
     assert (height.down_m != 0.0) is is_taken

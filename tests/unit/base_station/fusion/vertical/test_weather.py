@@ -116,7 +116,7 @@ def test_weather_with_a_reference_is_of_it_alone() -> None:
     assert barometers.weather.rise_m == 0.0
 
 
-def test_other_reference_at_another_place_moves_nobody() -> None:
+def test_other_reference_at_another_place_moves_no_member() -> None:
     barometers = Barometers()
     places = (("REF", SITE_M), ("REF", SITE_M + 9.0), ("FF-09", SITE_M - 50.0))
     for at, (unit_id, height_m) in enumerate(places):
@@ -126,7 +126,7 @@ def test_other_reference_at_another_place_moves_nobody() -> None:
     assert barometers.weather.rise_m == 0.0
 
 
-def test_reference_that_is_carried_upstairs_moves_nobody() -> None:
+def test_reference_that_is_carried_upstairs_moves_no_member() -> None:
     """Its height is no weather; where it is put down, it measures the weather again."""
     barometers, seq, way_m = Barometers(), 0, 0.0
 

@@ -73,7 +73,7 @@ def test_damaged_registry_is_read_again_later(pki, records):
     assert gate.registered == ["FF-01"]
 
 
-def test_station_without_an_authority_registers_nobody(tmp_path, records, caplog):
+def test_station_without_an_authority_registers_no_member(tmp_path, records, caplog):
     gate = Gate()
     EnrolledUnits(PkiFolder(tmp_path), gate, list, records).update()
     assert gate.registered == []

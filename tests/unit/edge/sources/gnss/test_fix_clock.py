@@ -47,7 +47,7 @@ def test_the_quickest_fix_tells_when_the_others_were(rate_hz: float, drift: floa
     assert np.diff(errors).max() < 0.05
 
 
-def test_what_the_line_held_up_keeps_its_instants() -> None:
+def test_fixes_delayed_by_the_line_keep_their_times() -> None:
     """For four seconds nothing comes, then everything at once."""
     utc_s = np.arange(1000.0, 1100.0)
     late_s = np.full(100, LATENCY_S)
@@ -81,7 +81,7 @@ def test_a_line_that_gets_slower_or_quicker_is_no_other_clock(more_s: np.ndarray
 
 
 @pytest.mark.parametrize("apart_h", [-12, -6, 6, 12])
-def test_it_does_not_matter_how_far_the_two_clocks_are_apart(apart_h: int) -> None:
+def test_offset_of_the_two_clocks_is_irrelevant(apart_h: int) -> None:
     """Their difference is known to a day, and may be anything in it."""
     utc_s = BEGAN / NS_PER_S + 3600.0 * apart_h + LATENCY_S + 0.02 + np.arange(0.0, 120.0)
     errors = errors_s(utc_s, late_by(120))[20:]

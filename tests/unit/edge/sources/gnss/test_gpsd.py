@@ -89,9 +89,7 @@ def test_accuracy_is_the_receivers_own_where_there_is_one(
 
 
 @pytest.mark.parametrize(("after_s", "std_m"), [(2.9, math.sqrt(5.0)), (3.1, NAN)])
-def test_what_was_stated_of_the_sky_long_ago_is_not_of_this_fix(
-    after_s: float, std_m: float
-) -> None:
+def test_outdated_satellite_report_is_not_used_for_a_fix(after_s: float, std_m: float) -> None:
     receiver = Gpsd("//h")
     received(receiver, SKY + GST, 100 * S)
     (report,) = received(receiver, tpv(), round((100 + after_s) * S))
@@ -104,7 +102,7 @@ def test_the_sky_comes_in_parts_of_which_none_undoes_another() -> None:
     assert found.horizontal_std_m == pytest.approx(4.0 / math.sqrt(2.0))
 
 
-def test_what_is_stated_of_one_receiver_stays_beside_what_is_stated_of_another() -> None:
+def test_reports_of_two_receivers_are_kept_separate() -> None:
     elsewhere = json_line("SKY", device=OTHER, hdop=9.0, vdop=9.0, uSat=4)
     found = fix(SKY + GST + elsewhere + tpv())
     assert found.satellites == 11
@@ -129,7 +127,7 @@ def test_satellites_are_those_in_use() -> None:
         *({"lat": 91.0}, {"lon": -181.0}, {"lat": NAN}, {"lon": NAN}),
     ],
 )
-def test_what_is_no_fix_of_satellites_is_none(stated: dict[str, float]) -> None:
+def test_report_without_satellites_is_no_fix(stated: dict[str, float]) -> None:
     found = fix(tpv(**stated))
     assert found.fix_type == 0
     assert math.isnan(found.lat_deg)
@@ -157,7 +155,7 @@ def lats(receiver: Gpsd, *stated: tuple[float, str, float, int]) -> list[float]:
     return [report.fix.lat_deg for report in reports]
 
 
-def test_of_two_receivers_the_one_with_fixes_is_taken_and_stayed_with() -> None:
+def test_receiver_with_fixes_is_chosen_of_two_and_kept() -> None:
     one, two = (
         [(float(k), DEVICE, 50.0, 3) for k in range(5)],
         [(k, OTHER, 60.0, 3) for k in range(5)],
@@ -168,7 +166,7 @@ def test_of_two_receivers_the_one_with_fixes_is_taken_and_stayed_with() -> None:
     assert lats(Gpsd("//h"), *blind) == pytest.approx([NAN, 60.0], nan_ok=True)
 
 
-def test_where_one_receiver_has_no_fixes_for_long_the_other_is_taken() -> None:
+def test_other_receiver_is_chosen_after_a_long_time_without_fixes() -> None:
     lost = [(0.0, DEVICE, 50.0, 3), (5.0, OTHER, 60.0, 3), (11.0, OTHER, 60.0, 3)]
     back = [(11.5, DEVICE, 50.0, 3), (12.0, OTHER, 60.0, 3)]
     assert lats(Gpsd("//h"), *lost, *back) == [50.0, 60.0, 60.0]
@@ -219,11 +217,11 @@ def test_why_there_is_nothing() -> None:
         b"\xff\xfe",
     ],
 )
-def test_what_gpsd_does_not_say_is_refused(line: bytes) -> None:
+def test_invalid_report_of_gpsd_is_refused(line: bytes) -> None:
     with pytest.raises(WireError):
         report_of(line)
 
 
 @pytest.mark.parametrize("line", [b"\r", json_line("PPS", device=DEVICE), json_line("ATT")])
-def test_what_is_of_no_use_is_passed_over(line: bytes) -> None:
+def test_unused_reports_are_ignored(line: bytes) -> None:
     assert Gpsd("//h").parse_line(line.strip(), 0) == ()

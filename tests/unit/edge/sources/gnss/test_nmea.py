@@ -67,7 +67,7 @@ def test_the_order_of_sentences_is_learnt(order) -> None:
     assert whole_at == [-1, *[len(order) - 1] * 5]
 
 
-def test_what_says_no_place_is_no_report_of_its_own() -> None:
+def test_sentence_without_a_position_is_no_report_of_its_own() -> None:
     """Such as what is left of a burst whose other sentences were lost."""
     assert received([gst(WITH_GST)]) == []
     assert received([gsa(WITH_GST), gst(WITH_GST)]) == []
@@ -175,7 +175,7 @@ def test_height_is_above_the_ellipsoid_or_none() -> None:
         ),
     ],
 )
-def test_who_says_that_there_is_no_fix_is_believed(values: bytes) -> None:
+def test_sentence_that_reports_no_fix_is_accepted(values: bytes) -> None:
     none = fix(values)
     assert none.fix_type == 0
     assert math.isnan(none.lat_deg)
@@ -213,7 +213,7 @@ def test_every_constellation_may_speak(talker: str) -> None:
     assert fix(burst(replace(WITH_GST, talker=talker))).fix_type == 3
 
 
-def test_what_has_no_time_is_by_its_arrival() -> None:
+def test_sentence_without_time_has_that_of_its_arrival() -> None:
     (report,) = received([sentence("GNGGA,,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
     assert report.of_day_ns is None
     assert report.fix.fix_type == 3
@@ -248,7 +248,7 @@ def test_a_date_that_is_off_is_not_looked_at() -> None:
         sentence("GNGGA,092725.00,9942.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,").strip(),
     ],
 )
-def test_what_is_no_whole_sentence_is_refused(line: bytes) -> None:
+def test_incomplete_sentence_is_refused(line: bytes) -> None:
     with pytest.raises(WireError):
         sentence_of(line)
 
@@ -258,7 +258,7 @@ def test_a_line_may_say_nothing(line: bytes) -> None:
     assert sentence_of(line) is None
 
 
-def test_what_stands_before_a_sentence_is_left_out() -> None:
+def test_bytes_before_a_sentence_are_ignored() -> None:
     for before in (b"\xb5b\x01\x07\x5c\x00", b"\\s:GPS1*5F\\", gga(HERE)[:20]):
         found = sentence_of(before + gga(HERE).strip())
         assert found is not None

@@ -100,7 +100,7 @@ def test_each_fix_is_taken_once(receiver: Receiver) -> None:
     assert receiver.reader.taken == 3
 
 
-def test_of_fixes_that_nobody_takes_the_newest_six_hundred_are_kept(receiver: Receiver) -> None:
+def test_newest_six_hundred_unread_fixes_are_kept(receiver: Receiver) -> None:
     receiver.says(610)
     kept = receiver.reader.take()
     assert len(kept) == 600
@@ -143,7 +143,7 @@ def test_a_receiver_that_hung_and_then_falls_silent_has_fallen_silent(receiver: 
     assert "it has fallen silent" in fault
 
 
-def test_what_is_no_receivers_is_shown(receiver: Receiver) -> None:
+def test_line_of_another_device_is_reported(receiver: Receiver) -> None:
     noise = b"\x81" * 60
     (fault,) = [fault for _ in range(11) for fault in receiver.receives(noise, b"x")]
     assert f"what comes is no receiver's: {noise[:40]!r} (no whole sentence)" in fault

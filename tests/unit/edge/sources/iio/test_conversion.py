@@ -54,7 +54,7 @@ def test_a_matrix_of_one_kind_is_not_another_one_s(tree: SysfsTree) -> None:
         "",
     ],
 )
-def test_what_is_no_rotation_is_refused(text: str) -> None:
+def test_matrix_that_is_no_rotation_is_refused(text: str) -> None:
     with pytest.raises(UnusableDeviceError, match="no rotation"):
         parse_mount_matrix(text)
 

@@ -108,7 +108,7 @@ def test_the_range_is_the_least_that_holds_steps(tree, offered, chosen, full_sca
     assert plan.full_scales[ACCEL] == pytest.approx(full_scale, rel=1e-3)
 
 
-def test_a_range_whose_bits_nobody_tells_is_the_widest(tree: SysfsTree) -> None:
+def test_range_without_a_known_sample_width_is_the_widest(tree: SysfsTree) -> None:
     device = tree.iio(0, name="a", in_accel_scale="1", in_accel_scale_available="1 4 2")
     plan = plan_polling(device, (ACCEL,), 100.0)
     assert (written(plan), plan.full_scales) == ({"in_accel_scale": "4"}, {})

@@ -61,7 +61,7 @@ def start(tree: SysfsTree, tmp_path: Path) -> Iterator[Callable[[str], TakenBatc
         one.close()
 
 
-def test_one_device_with_both(plug, start) -> None:
+def test_device_with_accelerometer_and_gyroscope_is_read(plug, start) -> None:
     device = plug()
     with start("bmi160") as taken:
         until(lambda: len(taken) > ENOUGH, "samples")
@@ -360,7 +360,7 @@ def test_a_mount_matrix_that_cannot_be_is_stated(plug, start) -> None:
         assert len(taken) == 0
 
 
-def test_it_is_described_by_what_its_driver_offers(plug, tree) -> None:
+def test_description_contains_the_settings_of_the_driver(plug, tree) -> None:
     plug()
     described = IioSource("bmi160?rate=200", sysfs=tree.root).description
     assert (described.name, described.rate_hz) == ("bmi160", 200.0)

@@ -74,7 +74,7 @@ def test_an_offset_is_added_before_the_scale(tree: SysfsTree) -> None:
     assert read(tree, "lm35") == pytest.approx(0.5)
 
 
-def test_what_is_thousandths_of_a_degree_already(tree: SysfsTree) -> None:
+def test_processed_value_is_in_thousandths_of_a_degree(tree: SysfsTree) -> None:
     tree.iio(0, name="tmp006", in_temp_input="26500")
     assert read(tree, "tmp006") == pytest.approx(26.5)
 

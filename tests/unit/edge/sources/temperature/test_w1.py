@@ -65,6 +65,6 @@ def test_an_older_kernel_shows_a_checksum(tree: SysfsTree, checksum, expected) -
         assert found == pytest.approx(expected)
 
 
-def test_what_a_conversion_that_goes_on_shows_is_nothing(tree: SysfsTree) -> None:
+def test_unfinished_conversion_gives_no_temperature(tree: SysfsTree) -> None:
     (found,) = read_each(tree, "")
     assert isinstance(found, Unreadable)

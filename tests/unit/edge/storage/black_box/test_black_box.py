@@ -122,7 +122,7 @@ def test_a_replay_of_a_replay_is_the_same_recording(tmp_path):
         assert repr(again.others) == repr(batch.others)
 
 
-def test_what_came_while_the_sensor_was_gone_is_played_when_it_came(tmp_path):
+def test_records_during_the_absence_of_the_sensor_are_played_at_their_times(tmp_path):
     """Fixes of a receiver beside it, each by itself: not all at once with the last sample."""
     raw = SampleEncoder("u1", 7)
     source = open_source(SCENARIO)
@@ -181,7 +181,7 @@ def test_any_segment_can_be_played_by_itself(tmp_path):
     assert sum(1 for one in segments for _ in BlackBoxSource(one).batches()) == 100
 
 
-def test_what_came_last_is_on_the_disk_though_nothing_comes_after_it(tmp_path):
+def test_last_samples_are_saved_without_later_ones(tmp_path):
     """The sensor has failed, and then the unit is switched off."""
     clock = ManualClock()
     box, raw = boxed(tmp_path, clock)
@@ -281,7 +281,7 @@ def test_a_clock_that_was_never_set_does_not_make_the_newest_the_oldest(tmp_path
 
 
 @pytest.mark.slow
-def test_what_is_no_black_box_is_explained(tmp_path):
+def test_folder_that_is_no_black_box_is_refused_with_a_reason(tmp_path):
     with pytest.raises(RecordingError, match="there is no black box"):
         BlackBoxSource(tmp_path / "nothing")
     with pytest.raises(RecordingError, match="holds no segments"):

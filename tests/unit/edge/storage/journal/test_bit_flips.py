@@ -78,7 +78,7 @@ def served(journal: Journal, what: str) -> list[int]:
         "seq = seq + 0.5",
     ],
 )
-def test_what_is_behind_it_is_given_all_the_same(path: Path, seq: int, damage: str) -> None:
+def test_messages_after_the_damage_are_served(path: Path, seq: int, damage: str) -> None:
     change(path, f"UPDATE message SET {damage} WHERE seq = {seq}")
     journal = opened(path)
     assert served(journal, "range") == [one for one in range(1, COUNT + 1) if one != seq]
@@ -95,7 +95,7 @@ def test_a_number_that_stands_twice_is_given_once(path: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", ["77", "CAST(x'ffff' AS TEXT)"])
-def test_it_keeps_no_unit_from_starting(path: Path, damage: str) -> None:
+def test_damaged_journal_does_not_prevent_the_start(path: Path, damage: str) -> None:
     change(path, f"INSERT INTO message SELECT worth, boot, 99, suffix, 0, {damage} FROM message "
                  f"WHERE seq = {ALERT_AT}")  # fmt: skip
     journal = opened(path)

@@ -39,7 +39,7 @@ def seqs(journal: Journal, boot_id: int, first: int = 1, last: int = 10**9) -> l
     return [each.seq for each in journal.read(boot_id, first, last)]
 
 
-def test_it_gives_back_what_it_was_given_in_order_over_all_channels(tmp_path):
+def test_journal_returns_messages_of_all_channels_in_order(tmp_path):
     journal = spool_at(tmp_path)
     channels = itertools.cycle((POSITION, EVENT, IMU, STATUS))
     given = [entry(seq, channel) for seq, channel in zip(range(1, 201), channels, strict=False)]
@@ -122,7 +122,7 @@ def test_a_journal_that_has_nothing_of_this_boot_says_so(tmp_path):
     second.close()
 
 
-def test_what_the_station_has_goes_first(tmp_path):
+def test_acknowledged_messages_are_deleted_first(tmp_path):
     journal = spool_at(tmp_path, limit_bytes=1 * MB)
     journal.append([entry(seq, EVENT, 800) for seq in range(1, 601)])
     journal.acknowledge(journal.boot_id, 600)
@@ -138,7 +138,7 @@ def test_what_the_station_has_goes_first(tmp_path):
     journal.close()
 
 
-def test_of_what_the_station_has_the_oldest_boot_goes_first(tmp_path):
+def test_oldest_boot_of_acknowledged_messages_is_deleted_first(tmp_path):
     """Messages of the last boot, such as a mayday, are needed at the next start."""
     for boot_id in (1, 2):
         journal = spool_at(tmp_path, boot_ids=[boot_id])
@@ -164,7 +164,7 @@ def test_room_is_made_for_more_than_the_next_message(tmp_path, monkeypatch):
     journal.close()
 
 
-def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_path):
+def test_acknowledgement_of_an_earlier_boot_does_not_apply_to_this_one(tmp_path):
     first = spool_at(tmp_path, boot_ids=[1])
     first.append([entry(seq) for seq in range(1, 101)])
     first.close()
@@ -181,7 +181,7 @@ def test_what_the_station_has_of_an_earlier_boot_says_nothing_of_this_one(tmp_pa
     second.close()
 
 
-def test_what_is_still_to_come_cannot_have_been_acknowledged(tmp_path):
+def test_acknowledgement_of_future_messages_is_ignored(tmp_path):
     """Else it would be given up first, and nobody would have it."""
     journal = spool_at(tmp_path)
     journal.append([entry(1), entry(2)])
@@ -212,7 +212,7 @@ def steps(monkeypatch):
     return counted
 
 
-def test_what_there_is_of_a_boot_is_stated_without_reading_it(tmp_path, steps):
+def test_index_of_a_boot_is_given_without_reading_its_messages(tmp_path, steps):
     """The station asks every half minute, and a journal may have half a gigabyte."""
     journal = spool_at(tmp_path)
     journal.append([entry(1, channel) for channel in (IMU, POSITION)])
@@ -248,7 +248,7 @@ def test_boots_of_which_nothing_is_left_do_not_slow_the_making_of_room(
     assert taken[1] < 5 * taken[0]
 
 
-def test_what_could_not_be_given_up_after_all_is_not_counted(tmp_path, monkeypatch):
+def test_failed_deletion_is_not_counted(tmp_path, monkeypatch):
     journal = spool_at(tmp_path, limit_bytes=1 * MB)
     journal.append([entry(seq, IMU, 800) for seq in range(1, 1501)])
     with monkeypatch.context() as broken:
@@ -267,7 +267,7 @@ def test_what_could_not_be_given_up_after_all_is_not_counted(tmp_path, monkeypat
     journal.close()
 
 
-def test_what_is_safe_outlives_a_power_cut(tmp_path):
+def test_saved_messages_survive_a_power_cut(tmp_path):
     """No test can cut the power; this is what SQLite asks for to promise it."""
     journal = spool_at(tmp_path)
     reported = [journal._writer.execute(f"PRAGMA {name}").fetchone()[0] for name in PROMISING]

@@ -91,17 +91,17 @@ def test_max_bounds_the_answer_and_its_end_says_where_to_go_on(journal):
     assert (chunk.from_seq, chunk.to_seq) == (41, 51)
 
 
-def test_what_is_not_written_yet_is_not_called_lost(journal):
+def test_unwritten_messages_are_not_reported_as_lost(journal):
     (chunk,) = chunks(journal, "epoch=9;from=99;to=200")
     assert chunk.to_seq == 100
     assert not chunks(journal, "epoch=9;from=101;to=200")
 
 
-def test_of_a_boot_of_another_machine_nothing_is_stated(journal):
+def test_boot_of_another_machine_is_not_served(journal):
     assert not chunks(journal, "epoch=1234;from=1;to=5")
 
 
-def test_of_a_boot_of_which_nothing_is_left_all_is_called_gone(tmp_path):
+def test_completely_deleted_boot_is_reported_as_gone(tmp_path):
     path = tmp_path / "journal.sqlite"
     Journal(path, lambda: 1234, 123, 10**8).close()
     journal = Journal(path, lambda: 9, 123, 10**8)
@@ -110,7 +110,7 @@ def test_of_a_boot_of_which_nothing_is_left_all_is_called_gone(tmp_path):
     journal.close()
 
 
-def test_what_lies_behind_damage_is_given_all_the_same(journal, tmp_path):
+def test_messages_after_damage_are_served(journal, tmp_path):
     """A page that cannot be read would be asked for every second, and nothing else of that boot."""
     journal.append([JournalRow(seq, POSITION, 0, bytes(100)) for seq in range(101, 2001)])
     journal.close()
@@ -154,7 +154,7 @@ def test_index_and_acknowledgement(journal):
     assert journal.pending == 20
 
 
-def test_of_any_number_of_runs_the_newest_are_named(tmp_path, monkeypatch):
+def test_newest_of_many_runs_are_listed(tmp_path, monkeypatch):
     monkeypatch.setattr("edge.storage.journal.server._MOST_BOOTS", 20)
     boot_ids = itertools.count(1)
     for _ in range(30):
@@ -183,7 +183,7 @@ def test_questions_without_sense_get_nothing_and_break_nothing(journal, what, pa
     assert len(chunks(journal, "epoch=9;from=1;to=100")) == 1
 
 
-def test_what_lasts_is_reported_once_and_again_when_it_comes_back(journal, caplog, monkeypatch):
+def test_lasting_fault_is_reported_once_and_again_when_it_recurs(journal, caplog, monkeypatch):
     full = StoreError("database or disk is full")
 
     def refuse(*_: object) -> None:

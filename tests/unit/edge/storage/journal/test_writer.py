@@ -66,7 +66,7 @@ def kept(journal: Journal) -> list[int]:
     return [entry.seq for entry in journal.read(journal.boot_id, 1, 10**6)]
 
 
-def test_what_is_on_disk_is_not_written_again(journal, journal_writer, monkeypatch):
+def test_saved_message_is_not_written_again(journal, journal_writer, monkeypatch):
     written: list[int] = []
     append = journal.append
 
@@ -83,7 +83,9 @@ def test_what_is_on_disk_is_not_written_again(journal, journal_writer, monkeypat
     assert journal_writer.fault is None
 
 
-def test_what_a_disk_refuses_is_written_when_it_has_room(journal, journal_writer, full_disk):
+def test_messages_refused_by_a_full_disk_are_written_when_there_is_room(
+    journal, journal_writer, full_disk
+):
     with full_disk():
         journal_writer.write([stated(1), stated(2)])
         assert "the disk is full" in str(journal_writer.fault)
@@ -95,9 +97,7 @@ def test_what_a_disk_refuses_is_written_when_it_has_room(journal, journal_writer
     assert journal_writer.fault is None
 
 
-def test_nobody_waits_for_longer_than_the_disk_takes(
-    journal, journal_writer, monkeypatch, full_disk
-):
+def test_failed_write_ends_the_wait_of_the_sender(journal, journal_writer, monkeypatch, full_disk):
     """Otherwise every message would be sent a second late."""
     monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 1e6)
     journal_writer.write([mayday(1)])
@@ -154,7 +154,7 @@ def test_an_alert_is_not_ousted_by_what_came_after_it(
     assert journal_writer.never_saved == 3
 
 
-def test_what_a_full_disk_cost_is_counted_and_stated(
+def test_messages_lost_on_a_full_disk_are_counted_and_reported(
     journal, journal_writer, monkeypatch, caplog, full_disk
 ):
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
@@ -188,7 +188,7 @@ def test_a_disk_that_hangs_is_not_waited_for(journal, journal_writer, monkeypatc
     assert journal_writer.never_saved == 0
 
 
-def test_what_a_disk_has_in_hand_while_it_hangs_is_kept_once_and_not_ousted(
+def test_messages_being_written_to_a_hanging_disk_are_kept_once(
     journal, journal_writer, monkeypatch, hanging_disk
 ):
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 2)

@@ -30,7 +30,7 @@ def heading_deg(rows):
     return degrees(np.arctan2(east_m, north_m))
 
 
-def test_who_stands_goes_nowhere_and_is_sure_of_it():
+def test_standing_wearer_stays_in_place_with_a_small_uncertainty():
     rows = tracked(imu(still(20.0)))
     assert rows.distance_m[-1] == 0.0
     assert rows.stationary.all()
@@ -64,7 +64,7 @@ def test_one_bump_is_no_walk():
     assert rows.distance_m[-1] < 1.0
 
 
-def test_who_turns_on_the_spot_gets_no_further():
+def test_turning_on_the_spot_adds_no_distance():
     turning = tracked(imu(still(3.0), steps(10, rate_z_radps=3.0), still(3.0)))
     straight = tracked(imu(still(3.0), steps(10), still(3.0)))
     assert turning.distance_m[-1] < 0.35 * straight.distance_m[-1]
@@ -86,7 +86,7 @@ def test_a_compass_holds_the_heading_that_a_bias_turns():
     assert aided.heading_std_rad[-1] < without.heading_std_rad[-1]
 
 
-def test_who_swings_in_a_cone_does_not_turn():
+def test_coning_motion_adds_no_heading():
     """Its rate about the vertical has a mean, which is the angle that the cone encloses."""
     t_s = np.arange(round(60.0 * RATE_HZ)) / RATE_HZ
     angles_rad = np.column_stack([0.5 * np.cos(7.0 * t_s), 0.1 * np.sin(7.0 * t_s)])
@@ -119,12 +119,12 @@ def test_a_step_in_a_hand_is_shorter_than_its_swing_looks():
 
 
 @pytest.mark.parametrize("place", ["hip", "lower_back", "chest"])
-def test_what_is_described_as_worn_on_a_trunk_is_not_taken_for_a_hand(place):
+def test_sensor_described_as_worn_on_the_trunk_is_not_classified_as_hand(place):
     walk = imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0))
     assert tracked(walk, place=place).distance_m[-1] > 1.1 * tracked(walk).distance_m[-1]
 
 
-def test_what_motion_shows_to_be_on_the_upper_body_may_be_in_a_hand():
+def test_sensor_recognised_on_the_upper_body_may_be_in_a_hand():
     walk = imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0))
     np.testing.assert_array_equal(
         tracked(walk, place="upper_body").distance_m, tracked(walk).distance_m

@@ -78,7 +78,7 @@ def test_the_wrong_sensors_are_tracked_by_another_tracker_and_that_is_noted() ->
     )
 
 
-def test_a_leg_that_nobody_has_measured_is_noted() -> None:
+def test_missing_leg_length_is_reported() -> None:
     (note,) = select_named("pair", worn("chest", "shank"), BodyDimensions()).notes
     assert "usual leg length" in note
     assert select_named("pair", worn("chest", "shank"), BodyDimensions(height_m=1.8)).notes == ()

@@ -107,7 +107,7 @@ def test_lengths_that_differ_meet_between_the_two():
     assert away_m(rows) == pytest.approx(LENGTH_M, rel=0.005)
 
 
-def test_what_the_comparison_moves_is_no_movement():
+def test_correction_by_the_comparison_is_no_movement():
     rows = fused(Scripted(), Scripted(lost_from_ns=30_000_000_000))
     moved_m = np.diff(rows.position_n_m[:, :2] - rows.past_shift_n_m, axis=0)
     assert np.hypot(*moved_m.T).max() < 0.05

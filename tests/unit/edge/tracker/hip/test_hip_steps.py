@@ -33,7 +33,7 @@ def test_every_step_is_found(frequency_hz):
 
 
 @pytest.mark.parametrize("amplitude_mps2", [0.3, 0.6])
-def test_what_does_not_pass_all_thresholds_is_no_step(amplitude_mps2):
+def test_motion_below_any_threshold_is_no_step(amplitude_mps2):
     assert tracked(bobbing(24, 1.9, amplitude_mps2)).steps[-1] == 0
 
 

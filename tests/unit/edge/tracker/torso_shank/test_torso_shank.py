@@ -58,7 +58,7 @@ def test_way_is_as_long_as_the_leg():
     assert ratio == pytest.approx(1.1, abs=0.02)
 
 
-def test_a_leg_that_nobody_measured_is_of_the_height_and_less_sure():
+def test_leg_length_is_estimated_from_the_height_with_more_uncertainty():
     config = TorsoShankConfig()
     measured_m, measured_std = leg_length_m(BodyDimensions(1.8, 0.9), config)
     of_height_m, of_height_std = leg_length_m(BodyDimensions(height_m=1.8), config)

@@ -44,7 +44,7 @@ def test_every_step_is_found_and_as_long_as_its_period_says(frequency_hz, steps)
     assert np.hypot(*rows.position_n_m[-1, :2]) == pytest.approx(expected_m, rel=0.02)
 
 
-def test_what_is_too_weak_or_too_fast_is_no_step():
+def test_too_weak_or_too_fast_motion_is_no_step():
     assert tracked(bobbing(20, 1.8, amplitude_mps2=0.3)).distance_m[-1] == 0.0
     fast = tracked(bobbing(40, 4.0, amplitude_mps2=8.0))  # a rattle: every second peak at most
     assert fast.steps[-1] <= 10

@@ -35,7 +35,7 @@ def test_drift_of_the_main_filter_is_added_to_the_first_state_alone():
     np.testing.assert_allclose(after - before, 0.4 * np.eye(COUNT)[0][:, None] * np.eye(COUNT)[0])
 
 
-def test_what_the_main_filter_learned_is_a_measurement_of_the_first_state():
+def test_update_of_the_main_filter_is_a_measurement_of_the_first_state():
     before = random_covariance(3)
     variance = 0.25 * before[0, 0]
     after, expected = before.copy(), before.copy()

@@ -121,7 +121,7 @@ AIR = {
 
 
 @pytest.mark.parametrize("what", AIR)
-def test_the_air_alone_lifts_nobody_off_a_flat_floor(what):
+def test_pressure_change_alone_changes_no_height_on_a_flat_floor(what):
     made, imu = walk_in_air(AIR[what])
     rows = run(made.description, imu)
     assert np.abs(rows.position_n_m[rows.stationary, 2]).max() < 0.1

@@ -74,7 +74,7 @@ def test_a_field_that_is_bent_all_over_shows_by_strength_and_dip():
         assert np.median(stds_rad) > 1.5 * np.median(clean_rad)
 
 
-def test_where_the_earths_field_is_not_known_north_is_stated_with_more_doubt():
+def test_unknown_field_of_the_earth_increases_the_uncertainty_of_north():
     known, unknown = (np.median(north_errors_rad(0, earth=earth)[1]) for earth in (EARTH, None))
     assert unknown > 2.0 * known
 

@@ -107,7 +107,7 @@ def test_a_compass_tells_of_the_gains_as_a_kalman_filter_would():
     assert not off_diagonal.any()
 
 
-def test_what_a_compass_reported_goes_on_turning_the_walk():
+def test_estimate_by_a_compass_continues_to_correct_the_walk():
     _, state = received(0.02, 1e-6)
     state["gyro_radps"], state["accel_mps2"] = [0.0, 0.0, 1.0], FORCE_MPS2
     before = state["scale_errors"]["heading_sensitivity"].copy()

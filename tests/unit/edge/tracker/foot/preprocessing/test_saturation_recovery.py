@@ -46,7 +46,7 @@ def cut_off_mps(force_mps2):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("peak_mps2", [25.0, 30.0, 40.0, -30.0])
-def test_what_a_swing_hides_is_found_by_its_slopes(peak_mps2):
+def test_clipped_part_of_a_swing_is_recovered_from_its_slopes(peak_mps2):
     force_mps2 = swing_mps2(peak_mps2)
     bridged_mps, doubt_mps = hidden_mps(force_mps2)
     assert bridged_mps == pytest.approx(cut_off_mps(force_mps2), rel=0.5)

@@ -52,5 +52,5 @@ def test_every_contradiction_widens_by_the_distance_of_its_velocity():
     assert widened_m == pytest.approx(2 * 2.0 * 0.5)
 
 
-def test_what_the_gains_explain_is_no_evidence():
+def test_difference_explained_by_the_gains_is_no_evidence():
     assert misfits([40.0, 40.0], scale_std=0.1)[0] == [False, False]

@@ -65,7 +65,7 @@ def is_taken_back(state, progress):
         (-0.9, 0.4, False),  # neither explains it
     ],
 )
-def test_what_is_missing_at_the_next_stance_decides(first, second, taken_back):
+def test_residual_at_the_next_stance_decides(first, second, taken_back):
     assert is_taken_back(*two_stances(first, second)) == taken_back
 
 
@@ -91,7 +91,7 @@ def test_a_stance_that_lasts_or_ends_a_stride_is_no_question(kwargs):
     assert state["misfit_n_m"][0] == 0.0
 
 
-def test_who_does_it_once_does_it_again_on_less_evidence():
+def test_repeated_correction_needs_less_evidence():
     state, progress = two_stances(-0.9, 0.9)
     for i in range(3):  # as after any other swing
         state["covariance"][VELOCITY + i, VELOCITY + i] = STD_MPS**2

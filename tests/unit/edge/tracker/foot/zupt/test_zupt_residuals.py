@@ -35,7 +35,7 @@ def test_all_noise_of_a_walk_without_a_fault_is_ordinary():
     assert state["ordinary_m2"] == pytest.approx(state["noise_m2"])
 
 
-def test_what_a_fault_adds_is_not():
+def test_residual_of_a_faulty_stride_is_excluded():
     state = new_filter_state()[0]
     stride(state, adds_m2=0.01, adds_rad2=1e-4)
     stride(state, adds_m2=0.5, adds_rad2=0.0, faulty=True)
