@@ -20,6 +20,7 @@ from base_station.core.pipeline import StationPipeline
 from base_station.replay.unrecorded import LONGEST_NS, RecordGap, UnrecordedTime
 from base_station.storage.checkpoints import Checkpoints, SavedState
 from shared.codec import encode
+from shared.coded_text import NO_CODE
 from shared.messages import AlarmChange, FusedPosition
 from shared.messages.alarm import NO_PARAMETERS
 
@@ -215,12 +216,22 @@ class Comparison:
 
 
 def _is_older(logged: Decision, again: Decision) -> bool:
-    """True for the same decision, logged by a version whose alarms had no code: they had other
-    words, no parameters, no reason and no peak, and the note stood behind the name.
+    """True for the same decision, logged by a version that had not all of today's codes."""
+    if isinstance(logged, AlarmChange) and isinstance(again, AlarmChange):
+        if logged.code and not logged.reason:  # the station's own reasons had no code
+            return msgspec.structs.replace(again, reason="") == logged
+        return not logged.code and _as_before_codes(logged, again) == logged
+    if isinstance(logged, FusedPosition) and isinstance(again, FusedPosition):
+        older = msgspec.structs.replace(again, quality_code=NO_CODE)
+        return logged.quality_code == NO_CODE and encode(older) == encode(logged)
+    return False
+
+
+def _as_before_codes(logged: AlarmChange, again: AlarmChange) -> AlarmChange:
+    """As of a version whose alarms had other words, no code, no parameters, no reason and no peak;
+    the note stood behind the name.
     """
-    if not isinstance(logged, AlarmChange) or not isinstance(again, AlarmChange) or logged.code:
-        return False
-    as_older = msgspec.structs.replace(
+    return msgspec.structs.replace(
         again,
         text=logged.text,
         by=f"{again.by}: {again.note}" if again.note else again.by,
@@ -230,7 +241,6 @@ def _is_older(logged: Decision, again: Decision) -> bool:
         note="",
         peak=None,
     )
-    return as_older == logged
 
 
 def compare(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Difference]:
