@@ -18,16 +18,36 @@ KEY = POSITION.key("anna")
 
 @pytest.mark.parametrize("qos", [Qos.LIVE, Qos.ALERT])
 def test_messages_arrive_once_complete_and_in_order(ends: BusEnds, qos: Qos) -> None:
+    """Each is sent when the one before has arrived: the link has room, and none may be dropped."""
     received = ReceivedMessages()
     ends.station.subscribe("muster/v1/*/up/**", received)
     publish_until_received(ends.unit, KEY, received)
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
-    for begin in range(0, len(sent), 2):
-        # Faster than the link, messages are dropped: the journal brings those.
-        for key, payload in sent[begin : begin + 2]:
-            ends.unit.publish(key, payload, qos)
-        until(partial(received.has, begin + 2), "the messages so far")
+    for count, (key, payload) in enumerate(sent, 1):
+        ends.unit.publish(key, payload, qos)
+        until(partial(received.has, count), f"message {count}", look_every_s=0.002)
     assert received.samples == sent
+
+
+@pytest.mark.parametrize("qos", [Qos.LIVE, Qos.ALERT])
+def test_messages_of_a_burst_arrive_once_complete_and_in_order(ends: BusEnds, qos: Qos) -> None:
+    """Faster than the link, whole messages are dropped: the journal brings those."""
+    received = ReceivedMessages()
+    ends.station.subscribe("muster/v1/*/up/**", received)
+    publish_until_received(ends.unit, KEY, received)
+    sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(1, 301)]
+    for key, payload in sent:
+        ends.unit.publish(key, payload, qos)
+    end = (KEY, b"end of the burst")
+
+    def has_ended() -> bool:
+        ends.unit.publish(*end, qos)
+        return end in received.samples
+
+    until(has_ended, "a message after the burst")
+    arrived = [one for one in received.samples if one != end]
+    assert sent[0] in arrived
+    assert arrived == [one for one in sent if one in arrived]
 
 
 def test_the_station_reaches_a_unit(ends: BusEnds) -> None:
