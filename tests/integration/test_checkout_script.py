@@ -65,7 +65,7 @@ def test_quick_tests_use_two_workers_per_core_and_skip_slow_ones(
 
 
 @pytest.mark.parametrize(
-    ("modules", "alone", "ended"), [(1, 0, 0), (3, 0, 0), (1, 1, 1), (4, 0, 1)]
+    ("modules", "alone", "ended"), [(1, 0, 0), (6, 0, 0), (1, 1, 1), (7, 0, 1)]
 )
 def test_a_few_modules_with_failures_are_run_once_more_and_their_failures_named(
     monkeypatch: pytest.MonkeyPatch,
