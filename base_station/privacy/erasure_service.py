@@ -53,6 +53,7 @@ from base_station.storage.imports import ImportFolder
 from base_station.storage.segment_index import segment_row
 from shared.channels import CHANNELS, OPERATOR, Direction, tracker_id
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import StoreError, UserError
 from shared.mcap_log import (
     SegmentReader,
@@ -285,7 +286,12 @@ class ErasureService:
         acted = self._act(by, BeginErasure(kind, subject_id))
         if acted is None:
             if not from_peer:
-                raise StoreError("this station does not lead; the one that leads orders it")
+                raise StoreError(
+                    coded(
+                        "erasure-not-leading",
+                        "this station does not lead; the one that leads orders it",
+                    )
+                )
             self._log.complete_segments()  # on the disk, to be read
             return last_order(self._actions(), kind, subject_id)
         done = _result(acted)
@@ -387,7 +393,13 @@ class ErasureService:
 
         def note(part: str) -> None:
             if path.parent == self._log.folder and self._mended_first(path, part):
-                raise StoreError(f"{part}; what is lost is fetched from the other station first")
+                raise StoreError(
+                    coded(
+                        "erasure-after-mending",
+                        "{part}; what is lost is fetched from the other station first",
+                        part=part,
+                    )
+                )
             damage.append(part)
 
         return note
@@ -450,7 +462,13 @@ class ErasureService:
 
 
 def _unknown(person_id: str) -> UserError:
-    return UserError(f"neither the roster nor the log knows a person {person_id}")
+    return UserError(
+        coded(
+            "unknown-person",
+            "neither the roster nor the log knows a person {person_id}",
+            person_id=person_id,
+        )
+    )
 
 
 def _keys_of(unit_id: str) -> list[str]:
@@ -463,7 +481,9 @@ def _result(acted: Future[ActionResult]) -> ActionResult:
     try:
         return acted.result(_ACTED_WITHIN_S)
     except TimeoutError as error:
-        raise StoreError("the station did not get to what it holds in memory") from error
+        raise StoreError(
+            coded("erasure-memory-timeout", "the station did not get to what it holds in memory")
+        ) from error
 
 
 def _actions_in(path: Path) -> Iterator[Record]:
@@ -477,4 +497,10 @@ def _remove(folder: Path) -> None:
     while folder.exists():
         shutil.rmtree(folder, ignore_errors=True)
         if time.monotonic() > end_s:
-            raise StoreError(f"{folder} cannot be removed; see who uses it, and forget again")
+            raise StoreError(
+                coded(
+                    "erasure-folder-in-use",
+                    "{folder} cannot be removed; see who uses it, and forget again",
+                    folder=str(folder),
+                )
+            )

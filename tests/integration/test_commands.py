@@ -77,7 +77,10 @@ def state(station: LiveStation) -> str:
     return command.units[0].state
 
 
-def test_a_par_is_sent_received_and_acknowledged(tmp_path: Path) -> None:
+def test_a_par_is_sent_received_and_acknowledged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 10**12)  # a late reply repeats nothing
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         unit = Unit(station.router)

@@ -8,6 +8,7 @@ import pytest
 from starlette.applications import Starlette
 
 from base_station.api.server import ConsoleServer, bind, serve_until_stopped
+from tests.rig.pacing import PATIENCE_S
 
 
 @pytest.mark.parametrize("after_s", [None, 0.0, 0.005, 0.01, 0.02, 0.05])
@@ -19,7 +20,7 @@ async def test_server_stopped_during_its_start_ends_normally(after_s: float | No
         server.stop()
     else:
         asyncio.get_running_loop().call_later(after_s, server.stop)
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(PATIENCE_S):
         await serve_until_stopped(server, stated.append)
     assert stated in ([], [f"ready {server.address}"])
 
@@ -31,7 +32,7 @@ async def test_invalid_requests_are_refused_and_logged_once(
     host, port = server.address.removeprefix("http://").split(":")
     serving = asyncio.create_task(server.serve())
     nonsense = b"\x00 nonsense\r\n\r\n"
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(PATIENCE_S):
         await server.wait_started()
         answers = [await _answer_to(nonsense, host, int(port)) for _ in range(20)]
         server.stop()

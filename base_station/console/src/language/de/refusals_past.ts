@@ -106,4 +106,14 @@ export const refusal_past: Part<"refusal_past"> = {
     "Es gibt kein Gerät {unit}, weder registriert noch verbunden.",
   "timeline-none":
     "Es gibt keinen Zeitverlauf: {reason}.",
+  "erasure-not-leading":
+    "Diese Station führt nicht; die führende ordnet es an.",
+  "erasure-after-mending":
+    "{part}; was fehlt, wird zuerst von der anderen Station geholt",
+  "unknown-person":
+    "Weder das Personal noch das Protokoll kennt eine Person {person_id}.",
+  "erasure-memory-timeout":
+    "Die Station kam nicht rechtzeitig an das, was sie im Speicher hält.",
+  "erasure-folder-in-use":
+    "{folder} lässt sich nicht löschen; prüfen Sie, wer den Ordner benutzt, und löschen Sie erneut.",
 };

@@ -104,4 +104,14 @@ export const refusal_past = {
     "There is no unit {unit}, registered or linked.",
   "timeline-none":
     "There is no timeline: {reason}.",
+  "erasure-not-leading":
+    "This station does not lead; the one that leads orders it.",
+  "erasure-after-mending":
+    "{part}; what is lost is fetched from the other station first",
+  "unknown-person":
+    "Neither the roster nor the log knows a person {person_id}.",
+  "erasure-memory-timeout":
+    "The station did not get to what it holds in memory.",
+  "erasure-folder-in-use":
+    "{folder} cannot be removed; see who uses it, and forget again.",
 };

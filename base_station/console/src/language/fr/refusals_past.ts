@@ -106,4 +106,14 @@ export const refusal_past: Part<"refusal_past"> = {
     "Il n’y a pas de boîtier {unit}, ni enregistré ni relié.",
   "timeline-none":
     "Il n’y a pas de chronologie\u00a0: {reason}.",
+  "erasure-not-leading":
+    "Cette station ne dirige pas ; celle qui dirige l'ordonne.",
+  "erasure-after-mending":
+    "{part} ; ce qui manque est d'abord repris de l'autre station",
+  "unknown-person":
+    "Ni l'effectif ni le journal ne connaissent de personne {person_id}.",
+  "erasure-memory-timeout":
+    "La station n'a pas atteint à temps ce qu'elle tient en mémoire.",
+  "erasure-folder-in-use":
+    "{folder} ne peut pas être supprimé ; voyez qui l'utilise, puis effacez de nouveau.",
 };
