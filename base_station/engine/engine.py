@@ -18,13 +18,13 @@ import msgspec
 
 from base_station.core.commands import command_tracker
 from base_station.core.pipeline import StationPipeline
-from base_station.engine import delta_pace
 from base_station.engine.action_queue import ActionQueue
 from base_station.engine.admission import Admission, classify, mark_missing
 from base_station.engine.checkpoint_writer import CheckpointWriter
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.console_recorder import ConsoleRecorder
 from base_station.engine.delivery_queue import DeliveryQueue
+from base_station.engine.delta_pace import DeltaPace
 from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.message_report import message_report
 from base_station.engine.ports import ActionResult, DeliveryResult, EnginePorts, Record, Trails
@@ -121,6 +121,7 @@ class StationEngine:
         self._due = _Due(now_ns, now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
+        self._delta_pace = DeltaPace()
         self._health_due = False  # the next delta carries the station's health
 
     # ---- from any thread
@@ -243,7 +244,9 @@ class StationEngine:
             try:
                 self._publish()
             finally:  # where it cannot be published, too
-                interval_ns = delta_pace.interval_ns(time.thread_time_ns() - before_ns)
+                interval_ns = self._delta_pace.interval_ns(
+                    now_ns, time.thread_time_ns() - before_ns, time.process_time_ns()
+                )
                 due.delta_ns = now_ns + interval_ns
                 due.urgent_delta_ns = now_ns + interval_ns // 2
         while self._snapshot_requests:
