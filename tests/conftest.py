@@ -18,7 +18,7 @@ from hypothesis import settings
 from edge.storage.journal.journal import Journal
 from edge.storage.journal.writer import JournalWriter
 from shared.clock import ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Position
 from tests.rig import message_factory
 from tests.rig.module_order import by_turns
@@ -127,13 +127,13 @@ def clock() -> ManualClock:
 
 
 @pytest.fixture
-def stamper(clock: ManualClock) -> Stamper:
+def header_factory(clock: ManualClock) -> HeaderFactory:
     """Headers of a unit called FF-01."""
-    return Stamper("FF-01", boot_id=0xB007, clock=clock)
+    return HeaderFactory("FF-01", boot_id=0xB007, clock=clock)
 
 
 @pytest.fixture
-def make_position(stamper: Stamper) -> Callable[..., Position]:
+def make_position(header_factory: HeaderFactory) -> Callable[..., Position]:
     """A plausible position of FF-01; keyword arguments replace fields."""
 
     def make(**changes: object) -> Position:
@@ -148,6 +148,6 @@ def make_position(stamper: Stamper) -> Callable[..., Position]:
             "distance_m": 12.3,
             "stationary": True,
         }
-        return message_factory.position(stamper.header(), **{**usual, **changes})
+        return message_factory.position(header_factory.header(), **{**usual, **changes})
 
     return make

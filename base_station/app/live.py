@@ -56,7 +56,7 @@ from base_station.unit_sync.clock_server import ClockServer
 from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.views.station import StationFacts
 from shared.channels import ROOT, clock_key
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, ExternalMarker
 from shared.messages.station import Action
 from shared.service_manager import ServiceManager
@@ -154,8 +154,8 @@ class _Station:
             ),
         )
         self._shown = LiveFanOut(resources.hub, self._forwarders)
-        stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
-        self._downlink = CommandSender(bus, stamper, clock, self._disk.roster.shown)
+        header_factory = HeaderFactory(STATION_ID, secrets.randbits(63), clock)
+        self._downlink = CommandSender(bus, header_factory, clock, self._disk.roster.shown)
         self._archive = automatic_archive(resources, replays, self._is_leader)
         self._radio = RadioRecorders(
             resources.config.radio,

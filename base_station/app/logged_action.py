@@ -11,8 +11,8 @@ from base_station.storage.projection import Projection
 from shared.channels import OPERATOR
 from shared.clock import SystemClock
 from shared.codec import encode
-from shared.envelope import Stamper
 from shared.errors import LogError
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentWriter
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import Action
@@ -26,7 +26,7 @@ def log_action(folder: DataFolder, store: Database, by: str, action: Action) -> 
     clock = SystemClock()
     behind_all = max((one.end_ns for one in folder.segments()), default=0) + 1
     t_ns = max(clock.utc_ns(), behind_all)  # station time never goes back
-    header = Stamper(STATION_ID, secrets.randbits(63), clock).header()
+    header = HeaderFactory(STATION_ID, secrets.randbits(63), clock).header()
     done = OperatorAction(header, f"{header.boot_id:016x}-{header.seq}", by, action)
     writer = SegmentWriter(folder.log)
     writer.write(t_ns, OPERATOR.key(STATION_ID), encode(done), urgent=True)

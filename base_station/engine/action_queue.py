@@ -15,8 +15,8 @@ from base_station.engine.write_ahead import WriteAhead
 from shared.channels import OPERATOR
 from shared.codec import encode
 from shared.coded_text import coded
-from shared.envelope import Stamper
 from shared.errors import StoreError
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
 
@@ -40,11 +40,11 @@ class ActionQueue:
     """``put`` from any thread; all else in the engine's, or where that has ended."""
 
     def __init__(
-        self, pipeline: StationPipeline, write_ahead: WriteAhead, stamper: Stamper
+        self, pipeline: StationPipeline, write_ahead: WriteAhead, header_factory: HeaderFactory
     ) -> None:
         self._pipeline = pipeline
         self._write_ahead = write_ahead
-        self._stamper = stamper
+        self._header_factory = header_factory
         self._waiting: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
         # Messages that waited during an action are new to its operator, and so later in the log.
         self.not_before_ns = 0
@@ -78,7 +78,7 @@ class ActionQueue:
         """Raises StoreError where the log does not take it: it is not done then, but for commands
         that people must receive in any case.
         """
-        header = self._stamper.header()
+        header = self._header_factory.header()
         action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
         payload = encode(OperatorAction(header, action_id, by, action))
         t_ns = max(header.t_utc_ns, self.not_before_ns)

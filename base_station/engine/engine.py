@@ -36,7 +36,7 @@ from shared.channels import EXTERNAL, OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.coded_text import coded
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, ExternalMarker, ExternalMarkers, Tick
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -91,7 +91,7 @@ class StationEngine:
     def __init__(self, pipeline: StationPipeline, ports: EnginePorts) -> None:
         self._pipeline = pipeline
         self._ports = ports
-        self._stamper = Stamper(STATION_ID, ports.boot_id, ports.clock)
+        self._header_factory = HeaderFactory(STATION_ID, ports.boot_id, ports.clock)
         self._health = HealthMonitor()
         self._publisher = ConsolePublisher(pipeline, ports.live, ports.people)
         self._console_recorder = ConsoleRecorder(pipeline, ports.log)
@@ -101,7 +101,7 @@ class StationEngine:
             pipeline, ports.log, publishers, self._projector, self._health
         )
         self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
-        self._actions = ActionQueue(pipeline, self._write_ahead, self._stamper)
+        self._actions = ActionQueue(pipeline, self._write_ahead, self._header_factory)
         self._deliveries = DeliveryQueue(pipeline, ports.log, ports.clock)
         self._lost: deque[Lost] = deque()
         self._external: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
@@ -313,7 +313,7 @@ class StationEngine:
 
     def _take_external(self) -> None:
         for _ in range(len(self._external)):
-            message = ExternalMarkers(self._stamper.header(), *self._external.popleft())
+            message = ExternalMarkers(self._header_factory.header(), *self._external.popleft())
             t_ns = max(message.header.t_utc_ns, self._actions.not_before_ns)
             self._write_ahead.append_and_apply(t_ns, _EXTERNAL_KEY, encode(message))
 
@@ -324,7 +324,7 @@ class StationEngine:
                     mark_missing((sender_id, boot_id, seq), self._pipeline.state)
 
     def _tick(self) -> None:
-        header = self._stamper.header()
+        header = self._header_factory.header()
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._actions.not_before_ns)
         tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
         self._write_ahead.append_and_apply(t_ns, TICK.key(STATION_ID), encode(tick))

@@ -31,7 +31,7 @@ from shared.channels import OPERATOR, Qos
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.coded_text import coded
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import TakeOver
 from shared.worker import Worker
@@ -65,7 +65,7 @@ class HaController:
         self.copy = ReplicaProgress(clock, lambda: log.place, config.confirm_s)
         self._election = Election(round(config.lease_s * NS_PER_S), clock.monotonic_ns())
         self._run_id = secrets.randbits(63)
-        self._stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
+        self._header_factory = HeaderFactory(STATION_ID, secrets.randbits(63), clock)
         self._by_hand = Event()  # a person has asked for the take-over
         self._ends = False  # it is going to start again
         self._follower = LogFollower(config.name, around.bus, log, around.feed, self._start_again)
@@ -223,7 +223,7 @@ class HaController:
         place, offered = around.log.place, around.log.offered
         around.clock.not_before(offered.t_ns)
         term = max(around.log.term, other.term if other is not None else 0) + 1
-        header = self._stamper.header()
+        header = self._header_factory.header()
         action = TakeOver(term, self._config.name, place.t_ns, place.events)
         action_id = f"{header.boot_id:016x}-{header.seq}"
         message = OperatorAction(header, action_id, STATION_ID, action)

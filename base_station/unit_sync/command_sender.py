@@ -21,8 +21,8 @@ from shared.bus import Bus
 from shared.channels import COMMAND
 from shared.clock import NS_PER_S, Clock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
 from shared.errors import WireError
+from shared.header_factory import HeaderFactory
 from shared.log_on_change import LogOnChange
 from shared.messages import Command
 from shared.worker import UNTIL_WOKEN, Worker
@@ -55,16 +55,20 @@ def without_text_of_commands(offer: Offer) -> Offer:
 class CommandSender:
     """``start`` it with a bus; ``report`` may be called from any thread and never waits.
 
-    ``stamper`` is this module's own; ``clock`` gives station time.
+    ``header_factory`` is this module's own; ``clock`` gives station time.
     """
 
     def __init__(
-        self, bus: Bus, stamper: Stamper, clock: Clock, shown: Callable[[str], str] = str
+        self,
+        bus: Bus,
+        header_factory: HeaderFactory,
+        clock: Clock,
+        shown: Callable[[str], str] = str,
     ) -> None:
         """``shown`` puts the names into a text."""
         self._bus = bus
         self._shown = shown
-        self._stamper = stamper
+        self._header_factory = header_factory
         self._clock = clock
         self._sent_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
         self._orders: Sequence[Order] = ()
@@ -119,7 +123,7 @@ class CommandSender:
 
     def _command(self, order: Order) -> Command:
         return Command(
-            header=self._stamper.header(),
+            header=self._header_factory.header(),
             command_id=order.command_id,
             kind=order.kind,
             issued_by=order.issued_by,

@@ -12,7 +12,7 @@ import msgspec
 from edge.agent.mayday_progress import MaydayProgress
 from edge.config import POSITION_RATE_HZ
 from shared.coded_text import NO_CODE, code_of_text, coded
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     ANSWERED_BY_PRESS,
     LIGHT,
@@ -59,14 +59,14 @@ class CommandHandler:
 
     def __init__(
         self,
-        stamper: Stamper,
+        header_factory: HeaderFactory,
         set_position_rate: Callable[[float], None] | None,
         known_replies: Iterable[CommandReply] = (),
         maydays: MaydayProgress | None = None,
         *,
         has_outputs: bool = True,
     ) -> None:
-        self._stamper = stamper
+        self._header_factory = header_factory
         self._set_position_rate = set_position_rate
         self._maydays = maydays or MaydayProgress()
         self._has_outputs = has_outputs
@@ -87,7 +87,7 @@ class CommandHandler:
         asks = state in UNANSWERED and command.kind in ANSWERED_BY_PRESS
         is_all_clear = command.kind is CommandKind.ALL_CLEAR and state in UNANSWERED
         ended = command.ended_command_id if is_all_clear else ""
-        header = self._stamper.header()
+        header = self._header_factory.header()
         reply = CommandReply(
             header,
             command.command_id,
@@ -111,7 +111,7 @@ class CommandHandler:
         replies = tuple(
             msgspec.structs.replace(
                 reply,
-                header=self._stamper.header(),
+                header=self._header_factory.header(),
                 state=CommandState.ACKNOWLEDGED,
                 detail=_BUTTON,
                 text_code=NO_CODE,
@@ -136,7 +136,7 @@ class CommandHandler:
             return None
         notified = msgspec.structs.replace(
             reply,
-            header=self._stamper.header(),
+            header=self._header_factory.header(),
             state=CommandState.NOTIFIED,
             detail=signal or reply.detail,
         )

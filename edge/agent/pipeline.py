@@ -41,7 +41,7 @@ from edge.tracker.interface import MultiSensorTracker, TrackBatch
 from edge.tracker.track_rows import empty_rows
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     BatteryState,
     EventKind,
@@ -80,7 +80,7 @@ class TrackerPipeline:
         self,
         identity: UnitIdentity,
         tracker: MultiSensorTracker,
-        stamper: Stamper,
+        header_factory: HeaderFactory,
         position_rate_hz: float,
         *,
         mayday: bool = False,
@@ -98,8 +98,8 @@ class TrackerPipeline:
         self._identity = identity
         self._sensors = UnitSensors(identity.sensors)
         self._tracker = tracker
-        self._stamper = stamper
-        self._positions = PositionPublisher(stamper, position_rate_hz)
+        self._header_factory = header_factory
+        self._positions = PositionPublisher(header_factory, position_rate_hz)
         self._places = {one.name: one.description.place or worn_on for one in identity.sensors}
         self._body = BodyPostureEstimator()
         self._mounting: MountingCheck | None = None
@@ -246,7 +246,7 @@ class TrackerPipeline:
 
     def _update_earth_field(self, batch: SensorBatch, timeline: Timeline) -> None:
         def utc_ns_of(t_ns: int) -> int:
-            return self._stamper.utc_ns(timeline.to_mono_ns(t_ns))
+            return self._header_factory.utc_ns(timeline.to_mono_ns(t_ns))
 
         learned = self._expected_field.take(batch, utc_ns_of)
         if learned is not None:
@@ -262,7 +262,7 @@ class TrackerPipeline:
             case GpsSample():
                 self._has_gps = True
                 if self._gps_times.takes(sample.t_ns):
-                    return [gps_fix(self._stamper.header(mono_ns), sample)]
+                    return [gps_fix(self._header_factory.header(mono_ns), sample)]
             case SightingSample():
                 return self._take_sighting(sample, mono_ns)
             case BatterySample():
@@ -271,7 +271,7 @@ class TrackerPipeline:
 
     def _take_ambient(self, sample: AmbientSample, mono_ns: int) -> list[Message]:
         found = self._ambient.push(sample)
-        return [] if found is None else [Temperature(self._stamper.header(mono_ns), *found)]
+        return [] if found is None else [Temperature(self._header_factory.header(mono_ns), *found)]
 
     def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
         """Publish the same thing at most once a second."""
@@ -283,7 +283,7 @@ class TrackerPipeline:
         if len(self._sighted_ns) >= _SIGHTED_MAX:
             self._sighted_ns.clear()
         self._sighted_ns[key] = sample.t_ns
-        return [sighting(self._stamper.header(mono_ns), sample)]
+        return [sighting(self._header_factory.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
         """A mayday stays until the wearer cancels it.  Pressed again it is sent again, as an
@@ -319,7 +319,7 @@ class TrackerPipeline:
         posture, confidence = self._body.posture(t_ns)
         on_foot = self._mounting is not None
         return Status(
-            header=self._stamper.header(timeline.to_mono_ns(t_ns)),
+            header=self._header_factory.header(timeline.to_mono_ns(t_ns)),
             activity=self._sensors.monitor.activity(t_ns),
             motionless_s=self._sensors.monitor.motionless_s,
             battery=None if battery is None else battery.level,
@@ -341,7 +341,7 @@ class TrackerPipeline:
     def _describe(self, mono_ns: int | None) -> UnitDescription:
         choice = self._choice or Choice(self._identity.tracker)
         described = described_unit(
-            self._stamper.header(mono_ns),
+            self._header_factory.header(mono_ns),
             [one.as_sent(choice.recognised.get(one.name, "")) for one in self._identity.sensors],
             software_version=self._identity.software_version,
             source=self._identity.source,
@@ -353,7 +353,7 @@ class TrackerPipeline:
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:
-        return UnitEvent.of(self._stamper.header(mono_ns), kind, detail)
+        return UnitEvent.of(self._header_factory.header(mono_ns), kind, detail)
 
 
 def _rate_hz(channel: Channel) -> float:

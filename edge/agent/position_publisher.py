@@ -13,7 +13,7 @@ from edge.clocks.timeline import Timeline
 from edge.samples import ImuBatch
 from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import MagneticNorth, Position
 from shared.path_noise import PathNoise
 
@@ -27,8 +27,8 @@ _STOREY_HYSTERESIS_M = 0.5
 class PositionPublisher:
     """Publisher that decimates rows by their own time, so that batching changes nothing."""
 
-    def __init__(self, stamper: Stamper, rate_hz: float) -> None:
-        self._stamper = stamper
+    def __init__(self, header_factory: HeaderFactory, rate_hz: float) -> None:
+        self._header_factory = header_factory
         self._times = Decimator(rate_hz)
         self._uncorrected = UncorrectedPath()
         self._pressures: list[tuple[int, float]] = []
@@ -113,7 +113,7 @@ class PositionPublisher:
         self._climb(-down_m)
         heading_std_rad = float(track.heading_std_rad[row])
         return Position(
-            header=self._stamper.header(timeline.to_mono_ns(t_ns)),
+            header=self._header_factory.header(timeline.to_mono_ns(t_ns)),
             north_m=north_m,
             east_m=east_m,
             down_m=down_m,

@@ -37,8 +37,8 @@ from shared.channels import COMMAND, clock_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.coded_text import coded
-from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     EventKind,
@@ -82,7 +82,7 @@ class AgentParts:
     raw: SampleEncoder
     pipeline: TrackerPipeline
     wearer: WearerNotifier
-    stamper: Stamper
+    header_factory: HeaderFactory
     clock: StationClock
     black_box: BlackBox
     journal: Journal
@@ -299,7 +299,7 @@ class Agent:
         parts.manager.working()
         clock, journal = parts.clock.estimate(), parts.journal
         heartbeat = Heartbeat(
-            parts.stamper.header(),
+            parts.header_factory.header(),
             journal.first_seq,
             journal.last_seq,
             never_saved=parts.journal_writer.never_saved,
@@ -316,7 +316,7 @@ class Agent:
 
     def _ask_time(self, on_reply: ReplyHandler) -> None:
         """Query the station for the time; a bus that fails is reopened by the link."""
-        selector = clock_key(self._parts.stamper.unit_id)
+        selector = clock_key(self._parts.header_factory.unit_id)
         try:
             self._parts.link.ask(selector, _CLOCK_TIMEOUT_S, on_reply)
         except Exception:
@@ -349,4 +349,4 @@ class Agent:
 
     def _send_event(self, kind: EventKind, detail: str) -> None:
         logger.info("%s: %s", kind.name, detail)
-        self._parts.outbox.put((UnitEvent.of(self._parts.stamper.header(), kind, detail),))
+        self._parts.outbox.put((UnitEvent.of(self._parts.header_factory.header(), kind, detail),))

@@ -50,7 +50,7 @@ from edge.storage.journal.writer import JournalWriter
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.coded_text import coded
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import EventKind, UnitEvent
 from shared.service_manager import ServiceManager
 from shared.tls import TlsIdentity
@@ -76,7 +76,7 @@ def compose_agent(
         )
         on_error.callback(journal.close)
         raw = SampleEncoder(unit_id, journal.boot_id)
-        stamper = Stamper(unit_id, journal.boot_id, clock, clock.utc_std_s)
+        header_factory = HeaderFactory(unit_id, journal.boot_id, clock, clock.utc_std_s)
         worn = tracked_unit(unit_id) or unit_id
         sensors = fitted_sensors(config, source, worn, folder.calibrations)
         tracking = tracking_of(config, sensors)
@@ -88,7 +88,9 @@ def compose_agent(
         )
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
-        pipeline = _pipeline(config, tracking, sensors, stamper, journal, latch, outputs, clock)
+        pipeline = _pipeline(
+            config, tracking, sensors, header_factory, journal, latch, outputs, clock
+        )
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = BlackBox(
             folder.black_box,
@@ -109,14 +111,14 @@ def compose_agent(
         on_error.callback(open_commands.close)
         maydays = MaydayProgress()
         handler = CommandHandler(
-            stamper,
+            header_factory,
             pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
             answers_before(journal),
             maydays,
             has_outputs=bool(outputs.kinds),
         )
         for detail in _quarantine_reports(folder, damaged):
-            outbox.put((UnitEvent.of(stamper.header(), EventKind.STORAGE_FAULT, detail),))
+            outbox.put((UnitEvent.of(header_factory.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(
             AgentParts(
                 source=source,
@@ -126,7 +128,7 @@ def compose_agent(
                 wearer=WearerNotifier(
                     outputs, open_commands, handler, maydays, pipeline, link, journal, clock
                 ),
-                stamper=stamper,
+                header_factory=header_factory,
                 clock=clock,
                 black_box=black_box,
                 journal=journal,
@@ -207,7 +209,7 @@ def _pipeline(
     config: EdgeConfig,
     tracking: Tracking,
     sensors: tuple[FittedSensor, ...],
-    stamper: Stamper,
+    header_factory: HeaderFactory,
     journal: Journal,
     latch: MaydayLatch,
     outputs: Outputs,
@@ -223,10 +225,10 @@ def _pipeline(
             place=config.place,
         ),
         tracking.tracker,
-        stamper,
+        header_factory,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=latch.was_active or mayday_before(journal),
-        raw_uplink=RawUplink(stamper) if config.tracker == NO_TRACKER else None,
+        raw_uplink=RawUplink(header_factory) if config.tracker == NO_TRACKER else None,
         foot_sensor=tracking.foot_sensor,
         worn_on=tracking.worn_on,
         notes=tracking.notes,

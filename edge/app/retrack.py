@@ -26,8 +26,8 @@ from shared.channels import NO_TRACKER, channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.config import load_config, nearest
-from shared.envelope import Stamper
 from shared.errors import ConfigError, RecordingError
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentPolicy, SegmentWriter
 from shared.messages import Message, Position, Status, UnitDescription
 
@@ -111,7 +111,7 @@ def retracked(
                     "", source.recorded.source, tracking.name, tuple(sensors), config.place
                 ),
                 tracking.tracker,
-                Stamper(
+                HeaderFactory(
                     source.unit_id, source.recorded.header.boot_id, ManualClock(log_ns - first_ns)
                 ),
                 rate_hz,

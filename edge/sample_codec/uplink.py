@@ -13,17 +13,17 @@ from edge.sample_codec.codec import raw_imu
 from edge.samples import Floats, ImuBatch
 from shared.channels import IMU
 from shared.clock import NS_PER_S
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import RawImu
 
 
 class RawUplink:
     """Collector of batches until they span a period; ``finish`` gives what is left."""
 
-    def __init__(self, stamper: Stamper) -> None:
+    def __init__(self, header_factory: HeaderFactory) -> None:
         assert IMU.rate_hz is not None
         self._period_ns = round(NS_PER_S / IMU.rate_hz)
-        self._stamper = stamper
+        self._header_factory = header_factory
         self._pending: dict[str, list[ImuBatch]] = {}  # by sensor; none is empty
 
     def push(self, imu: ImuBatch, timeline: Timeline, sensor: str = "") -> list[RawImu]:
@@ -46,7 +46,7 @@ class RawUplink:
 
     def _send(self, sensor: str, timeline: Timeline) -> RawImu:
         imu = _joined(self._pending.pop(sensor))
-        header = self._stamper.header(timeline.to_mono_ns(int(imu.t_ns[0])))
+        header = self._header_factory.header(timeline.to_mono_ns(int(imu.t_ns[0])))
         return raw_imu(header, imu, sensor)
 
     def _continues(self, pending: list[ImuBatch], imu: ImuBatch) -> bool:

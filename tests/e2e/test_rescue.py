@@ -51,7 +51,11 @@ class Walker(Wearable):
         place = [np.interp(at_m, self._walked_m, axis) for axis in self._corners.T]
         north_m, east_m, down_m = (np.array(place) - self._corners[0]).tolist()
         return message_factory.position(
-            self._stamper.header(), north_m=north_m, east_m=east_m, down_m=down_m, distance_m=at_m
+            self._header_factory.header(),
+            north_m=north_m,
+            east_m=east_m,
+            down_m=down_m,
+            distance_m=at_m,
         )
 
 

@@ -13,7 +13,7 @@ from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, channel_of
 from shared.clock import SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     CommandKind,
@@ -43,8 +43,8 @@ class Wearable:
 
     def __init__(self, unit_id: str, station: str) -> None:
         self._bus = ZenohBus(UnitEndpoint((station,)))
-        self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
-        self._handler = CommandHandler(self._stamper, lambda _: None)
+        self._header_factory = HeaderFactory(unit_id, secrets.randbits(63), SystemClock())
+        self._handler = CommandHandler(self._header_factory, lambda _: None)
         self._repeated: deque[Message] = deque(maxlen=REPEATED)
         self._lock = threading.RLock()  # tests and the walk say things by turns
         self._commands: SimpleQueue[bytes] = SimpleQueue()
@@ -67,11 +67,13 @@ class Wearable:
 
     def press_mayday(self) -> None:
         with self._lock:
-            self._send_repeatedly(UnitEvent(self._stamper.header(), EventKind.MAYDAY))
+            self._send_repeatedly(UnitEvent(self._header_factory.header(), EventKind.MAYDAY))
 
     def cancel_mayday(self) -> None:
         with self._lock:
-            self._send_repeatedly(UnitEvent(self._stamper.header(), EventKind.MAYDAY_CANCELLED))
+            self._send_repeatedly(
+                UnitEvent(self._header_factory.header(), EventKind.MAYDAY_CANCELLED)
+            )
 
     def acknowledge(self) -> None:
         with self._lock:
@@ -81,7 +83,7 @@ class Wearable:
     def describe(self, *outputs: str) -> None:
         """Say what sensors it has, and which outputs to notify its wearer with."""
         with self._lock:
-            header = self._stamper.header()
+            header = self._header_factory.header()
             self._say(
                 message_factory.description(
                     header, outputs=outputs, tracker="foot_and_trunk", sensors=SENSORS
@@ -108,8 +110,8 @@ class Wearable:
 
     def _send_every_second(self, steps: int) -> None:
         self._say(self._status(steps))
-        self._say(Temperature(self._stamper.header(), ambient_degc=31.0))
-        self._say(Heartbeat(self._stamper.header(), 1, 1, CLOCK_AHEAD_S, clock_std_s=0.003))
+        self._say(Temperature(self._header_factory.header(), ambient_degc=31.0))
+        self._say(Heartbeat(self._header_factory.header(), 1, 1, CLOCK_AHEAD_S, clock_std_s=0.003))
         # The bus may drop a message; it has no journal from which the station could fetch it.
         for message in self._repeated:
             self._say(message)
@@ -129,11 +131,11 @@ class Wearable:
 
     def _say(self, message: Message) -> None:
         channel = channel_of(message)
-        self._bus.publish(channel.key(self._stamper.unit_id), encode(message), channel.qos)
+        self._bus.publish(channel.key(self._header_factory.unit_id), encode(message), channel.qos)
 
     def _position(self, walked_m: float) -> Position:
         return message_factory.position(
-            self._stamper.header(),
+            self._header_factory.header(),
             north_m=walked_m,
             velocity_north_mps=SPEED_MPS,
             std_north_m=0.4,
@@ -143,5 +145,5 @@ class Wearable:
 
     def _status(self, steps: int) -> Status:
         return message_factory.status(
-            self._stamper.header(), battery=0.83, steps=steps, cadence_hz=1.8
+            self._header_factory.header(), battery=0.83, steps=steps, cadence_hz=1.8
         )

@@ -15,7 +15,7 @@ from shared.bus import ReplyHandler
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Header, Heartbeat, Position
 from tests.rig.station_script import START_NS, Script
 
@@ -94,7 +94,7 @@ def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
     pair.run(30.0)
     assert abs(pair.error_s()) < 0.005
     assert pair.clock.machine_ahead_s() == pytest.approx(-7 * DAY_S, abs=0.01)
-    header = Stamper(U, 1, pair.clock, pair.clock.utc_std_s).header()
+    header = HeaderFactory(U, 1, pair.clock, pair.clock.utc_std_s).header()
     assert header.utc_std_s > 0.0
     assert Header.from_wire(header.to_wire()).utc_std_s > 0.0
 
@@ -167,11 +167,11 @@ def test_station_and_unit_continue_after_the_stations_clock_is_set_back() -> Non
 def test_unit_whose_own_clock_is_set_continues_in_the_stations_time(by_s: float) -> None:
     pair = UnitAndStation()
     pair.run(30.0)
-    stamper = Stamper(U, 1, pair.clock, pair.clock.utc_std_s)
-    before = stamper.header()
+    header_factory = HeaderFactory(U, 1, pair.clock, pair.clock.utc_std_s)
+    before = header_factory.header()
     pair.unit_machine.set_utc_ahead(by_s)
     pair.run(1.0)
-    after = stamper.header()
+    after = header_factory.header()
     assert after.t_utc_ns - before.t_utc_ns == pytest.approx(1.05e9, rel=0.1)
     assert abs(pair.error_s()) < 0.005
 

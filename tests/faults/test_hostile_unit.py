@@ -17,7 +17,7 @@ from shared.bus_zenoh import ZenohBus
 from shared.channels import POSITION, Qos, alive_key, parse_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import read_log, segment_paths
 from shared.messages import (
     Header,
@@ -87,10 +87,10 @@ class Scene:
             wait_until(f"and to {name}", lambda: bus.has_subscriber(POSITION.key(name)))  # noqa: B023
 
     def flood(self, say: Say, over: Event) -> None:
-        stamper = Stamper(EVIL, secrets.randbits(63), SystemClock())
+        header_factory = HeaderFactory(EVIL, secrets.randbits(63), SystemClock())
         while not over.wait(FLOOD_S):
             for _ in range(AT_ONCE):
-                say(self.evil, stamper.header())
+                say(self.evil, header_factory.header())
 
     def problems(self) -> str:
         return " ".join(self.station.api.get("/health")["problems"])

@@ -19,7 +19,7 @@ from edge.storage.journal.server import JournalServer
 from shared.channels import POSITION, alive_key, parse_key
 from shared.clock import SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentReader, own_segments, read_log, segment_paths
 from shared.messages import Position
 from tests.rig.station_command import Browser, Command, Unit
@@ -81,9 +81,9 @@ def site(tmp_path: Path, make_position: MakePosition) -> Iterator[Site]:
         closing(Journal(tmp_path / "journal.sqlite", lambda: 7, 0, 10**9)) as journal,
     ):
         site = Site(tmp_path, journal, held)
-        stamper = Stamper(U, 7, SystemClock())
+        header_factory = HeaderFactory(U, 7, SystemClock())
         for _ in range(MESSAGES):
-            position = make_position(header=stamper.header())
+            position = make_position(header=header_factory.header())
             header = position.header
             journal.append([JournalRow(header.seq, POSITION, header.t_mono_ns, encode(position))])
             site.unit.say(position)

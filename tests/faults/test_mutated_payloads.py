@@ -32,8 +32,8 @@ from shared.channels import (
 )
 from shared.clock import ManualClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
 from shared.errors import UnknownChannelError, WireError
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import is_derived
 from shared.messages import (
     Command,
@@ -190,7 +190,7 @@ def last_health(screen: Screen) -> HealthView:
 def test_agent_answers_readable_commands_and_counts_the_rest() -> None:
     chance = random.Random(5)
     payloads = RandomPayloads(chance)
-    desk = CommandHandler(Stamper("FF-01", 1, ManualClock()), lambda _: None)
+    desk = CommandHandler(HeaderFactory("FF-01", 1, ManualClock()), lambda _: None)
     answered = unreadable = 0
     for number in range(COUNT // 4):
         payload = mutated(chance, payloads.next(COMMAND, "station", number))

@@ -52,7 +52,7 @@ class ClockScene:
         self.incident_id: str = incident["incident_id"]
 
     def say(self) -> None:
-        self.unit.say(Temperature(self.unit.stamper.header(), 21.0))
+        self.unit.say(Temperature(self.unit.header_factory.header(), 21.0))
 
     def problem_stated(self, words: str) -> bool:
         self.say()

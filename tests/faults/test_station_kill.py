@@ -37,7 +37,7 @@ class FastUnit:
 
     def _run(self) -> None:
         while not self._stop.wait(0.01):
-            header = self.unit.stamper.header()
+            header = self.unit.header_factory.header()
             self.unit.say(Temperature(header, 21.0))
             self.sent_ns[header.seq] = time.time_ns()
 

@@ -15,7 +15,7 @@ from PIL import Image
 from base_station.accounts.principals import Role
 from base_station.exporters import EXPORTERS
 from shared.clock import NS_PER_MS, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import EventKind, Position, Temperature, UnitEvent
 from shared.messages.station import ReportProblem
 from tests.rig.in_process_station import ORIGIN, PASSWORD, InProcessStation
@@ -151,13 +151,13 @@ async def test_action_on_an_alarm_raised_again_since_is_refused(
     station: InProcessStation, commander: httpx.AsyncClient, clock: ManualClock, what: str
 ) -> None:
     await commander.post("/units", json={"unit_id": "FF-01"})
-    stamper = Stamper("FF-01", 1, clock)
-    station.drive.receive(Temperature(stamper.header(), 120.0))
+    header_factory = HeaderFactory("FF-01", 1, clock)
+    station.drive.receive(Temperature(header_factory.header(), 120.0))
     station.projection.flush()
     (seen,) = (await commander.get("/alarms")).json()
     assert seen["last_raised_ms"] == seen["raised_ms"]
     clock.advance(5.0)
-    station.drive.receive(Temperature(stamper.header(), 170.0))
+    station.drive.receive(Temperature(header_factory.header(), 170.0))
     as_seen = {"last_raised_ms": seen["last_raised_ms"]}
     path = f"/alarms/{seen['alarm_id']}"
     refused = await commander.post(f"{path}/{what}", json=as_seen)
@@ -188,16 +188,16 @@ async def test_alarms_of_an_incident_show_when_they_were_raised_again(
     """Worse, or again after somebody had acknowledged it; not where it eased, nor afterwards."""
     await commander.post("/units", json={"unit_id": "FF-01"})
     incident = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
-    stamper = Stamper("FF-01", 1, clock)
+    header_factory = HeaderFactory("FF-01", 1, clock)
 
     def hot(degc: float, *times_s: float) -> None:
         for passed_s in times_s:
             clock.advance(passed_s)
-            station.drive.receive(Temperature(stamper.header(), degc))
+            station.drive.receive(Temperature(header_factory.header(), degc))
 
     def mayday() -> None:
         clock.advance(1.0)
-        station.drive.receive(UnitEvent(stamper.header(), EventKind.MAYDAY))
+        station.drive.receive(UnitEvent(header_factory.header(), EventKind.MAYDAY))
 
     def now_ms() -> int:
         return clock.utc_ns() // NS_PER_MS

@@ -18,8 +18,8 @@ from shared.bus_memory import MemoryBus, MemoryRouter
 from shared.channels import COMMAND, REPLY
 from shared.clock import ManualClock, SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
 from shared.errors import BusError
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply
 from shared.messages.station import ConfirmCommand, RegisterUnit, SendCommand
 from tests.rig.live_station import LiveStation, make_pipeline
@@ -36,7 +36,7 @@ class Unit:
         self.rates: list[float] = []
         self.received: list[Command] = []
         self.is_mute = False
-        self.desk = CommandHandler(Stamper(U, boot_id, SystemClock()), self.rates.append)
+        self.desk = CommandHandler(HeaderFactory(U, boot_id, SystemClock()), self.rates.append)
         self._hearing: Subscription | None = None
 
     def come(self) -> None:
@@ -177,7 +177,7 @@ def an_order(expires_ns: int) -> Order:
 def link() -> tuple[CommandSender, Unit, ManualClock]:
     router, clock = MemoryRouter(), ManualClock()
     return (
-        CommandSender(router.attach_station(), Stamper(STATION_ID, 1, clock), clock),
+        CommandSender(router.attach_station(), HeaderFactory(STATION_ID, 1, clock), clock),
         Unit(router),
         clock,
     )

@@ -15,7 +15,7 @@ from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
 from shared.clock import SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     CommandKind,
@@ -152,7 +152,7 @@ def test_starting_agent_links_with_the_second_station(station, start, hangs):
 def test_command_is_answered_executed_and_kept_over_a_kill(station, start):
     agent = start()
     until(lambda: station.of(Position))
-    header = Stamper("station", 1, SystemClock()).header()
+    header = HeaderFactory("station", 1, SystemClock()).header()
     command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=20.0)
     station.bus.publish(COMMAND.key("u1"), b"\x00 no command", Qos.ALERT)
     station.bus.publish(COMMAND.key("all"), encode(command), Qos.ALERT)
@@ -172,7 +172,7 @@ def test_unit_without_tracker_refuses_a_position_rate(station, start):
     """Its agent at the station sends them, over no radio."""
     start(WALK, "--tracker", "none")
     until(lambda: station.of(RawImu))
-    header = Stamper("station", 1, SystemClock()).header()
+    header = HeaderFactory("station", 1, SystemClock()).header()
     command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=1.0)
     station.bus.publish(COMMAND.key("u1"), encode(command), Qos.ALERT)
     until(lambda: station.of(CommandReply))
@@ -185,7 +185,11 @@ def test_unit_without_tracker_refuses_a_position_rate(station, start):
 def test_acknowledgement_of_the_wearer_is_kept_over_a_kill(station, start):
     """The simulated wearer looks at the unit every 10 s."""
     par = Command(
-        Stamper("station", 1, SystemClock()).header(), "c1", CommandKind.PAR_REQUEST, "anna", 0
+        HeaderFactory("station", 1, SystemClock()).header(),
+        "c1",
+        CommandKind.PAR_REQUEST,
+        "anna",
+        0,
     )
     first = start(WALK, "--speed", "5")
     until(lambda: station.of(Position))

@@ -44,7 +44,9 @@ def test_positions_are_shown_while_a_plan_of_11_mb_is_loaded(
         due_s = time.monotonic()
         while not over.is_set():
             north_m = 50.0 + time.monotonic() % 10.0
-            unit.say(make_position(header=unit.stamper.header(), north_m=north_m, east_m=50.0))
+            unit.say(
+                make_position(header=unit.header_factory.header(), north_m=north_m, east_m=50.0)
+            )
             due_s += 0.1
             over.wait(max(0.0, due_s - time.monotonic()))
 

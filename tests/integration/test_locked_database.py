@@ -41,7 +41,7 @@ def test_actions_are_answered_and_logged_while_the_database_is_locked(
         prepare(browser)
         greet(browser, unit, make_position)
         with locked(data):
-            unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+            unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
             until(lambda: maydays(browser), "the mayday is shown")
             (raised,) = maydays(browser)
             path = f"/alarms/{raised['alarm_id']}"

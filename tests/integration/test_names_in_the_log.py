@@ -62,7 +62,7 @@ class Scene:
 
     def _mayday(self) -> None:
         unit = self._unit
-        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
         until(lambda: self._browser.call("GET", "/alarms"), "mayday is raised")
         (self.mayday,) = self._browser.call("GET", "/alarms")
         seen = {"last_raised_ms": self.mayday["last_raised_ms"]}
@@ -77,7 +77,7 @@ class Scene:
             command = decode(COMMAND, payload)
             assert isinstance(command, UnitCommand)
             self.reported.append(command)
-            header = unit.stamper.header()
+            header = unit.header_factory.header()
             reply = CommandReply(header, command.command_id, CommandState.ACKNOWLEDGED, "")
             unit.bus.publish(REPLY.key("FF-01"), encode(reply), REPLY.qos)
 

@@ -36,8 +36,8 @@ from base_station.storage.recorder import Recorder
 from base_station.views.wire import Snapshot
 from shared.clock import NS_PER_S, ManualClock
 from shared.enrolment import Holder
-from shared.envelope import Stamper
 from shared.errors import StoreError
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
 from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
@@ -86,11 +86,11 @@ def test_last_stored_state_is_shown_read_only(
 
 def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> None:
     disk.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
-    stamper = Stamper(STATION_ID, 1, disk.clock)
+    header_factory = HeaderFactory(STATION_ID, 1, disk.clock)
     t_ns = disk.clock.utc_ns()
     actions: tuple[Action, ...] = (OpenIncident("i1", "Mill Lane"), RegisterUnit("FF-01", "one"),
                Assign("FF-01", "p1", "Bea", "red", "leader"))  # fmt: skip
-    header = stamper.header()
+    header = header_factory.header()
     disk.projection.project(
         Projection(
             t_ns,

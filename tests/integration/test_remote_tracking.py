@@ -28,7 +28,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import IMU, NO_TRACKER, channel_of, tracker_id
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import GpsFix, Message, Position, RawImu, Status, Temperature
 from shared.quality import Reason
 
@@ -61,14 +61,14 @@ def run(pipeline: TrackerPipeline, from_: Iterable[SensorBatch]) -> list[Message
 def pipeline(
     unit_id: str, tracker: str, boot_id: int = 7, sensor: SensorDescription = SENSOR
 ) -> TrackerPipeline:
-    stamper = Stamper(unit_id, boot_id, ManualClock())
+    header_factory = HeaderFactory(unit_id, boot_id, ManualClock())
     weak = tracker == NO_TRACKER
     return TrackerPipeline(
         UnitIdentity("1", WALK, tracker, (FittedSensor(sensor),)),
         OneSensorTracker(NoTracker() if weak else make_tracker(tracker, sensor)),
-        stamper,
+        header_factory,
         5.0,
-        raw_uplink=RawUplink(stamper) if weak else None,
+        raw_uplink=RawUplink(header_factory) if weak else None,
     )
 
 

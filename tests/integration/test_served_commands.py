@@ -11,7 +11,7 @@ from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, REPLY
 from shared.clock import SystemClock
 from shared.codec import decode, encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Command as UnitCommand
 from shared.messages import CommandReply
 from tests.rig.station_command import Browser, Command
@@ -28,7 +28,7 @@ def test_par_request_is_delivered_and_answered(tmp_path: Path) -> None:
     enrolment = pki.enroll(U)
     flags = ("serve", "--data", str(data), "--http", "127.0.0.1:0", "--listen", listen)
     station = Command(tmp_path / "output.txt", *flags)
-    desk = CommandHandler(Stamper(U, 1, SystemClock()), lambda _: None)
+    desk = CommandHandler(HeaderFactory(U, 1, SystemClock()), lambda _: None)
     received: list[UnitCommand] = []
     try:
         with (

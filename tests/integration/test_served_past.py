@@ -45,7 +45,7 @@ def play_incident(
     incident_id = prepare(browser)
     greet(browser, unit, make_position)
     walk(unit, make_position, 0, 15)
-    unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+    unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
     until(lambda: browser.call("GET", "/alarms"), "mayday is raised")
     walk(unit, make_position, 15, 25)
     assert browser.close_incident(incident_id) == 204

@@ -43,10 +43,10 @@ def test_live_state_is_restored_from_the_log_after_a_kill(
         greet(browser, unit, make_position)
         walk(unit, make_position, 0, 20)
         lying = message_factory.status(
-            unit.stamper.header(), activity=Activity.LYING, battery=0.5, mayday=True
+            unit.header_factory.header(), activity=Activity.LYING, battery=0.5, mayday=True
         )
         unit.say(lying)
-        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
         until(lambda: snapshot(browser)["alarms"], "mayday is raised")
         (alarm,) = snapshot(browser)["alarms"]
         seen = {"last_raised_ms": alarm["last_raised_ms"]}

@@ -45,7 +45,7 @@ def test_changed_thresholds_apply_and_are_audited_once(
         until(lambda: fusers_set_in(browser) == ["gps-switching"], "so is the fuser")
         prepare(browser)
         greet(browser, unit, make_position)
-        unit.say(message_factory.status(unit.stamper.header(), battery=0.5))
+        unit.say(message_factory.status(unit.header_factory.header(), battery=0.5))
         until(lambda: snapshot(browser)["alarms"], "the battery is low")
         (alarm,) = snapshot(browser)["alarms"]
         assert (alarm["rule"], alarm["level"]) == ("battery", "low")

@@ -47,7 +47,7 @@ def par(browser: Browser, incident_id: str) -> dict[str, str]:
 def walk(units: list[Unit], make_position: MakePosition, begin: int, end: int) -> None:
     for step in range(begin, end):
         for unit in units:
-            unit.say(make_position(header=unit.stamper.header(), north_m=float(step)))
+            unit.say(make_position(header=unit.header_factory.header(), north_m=float(step)))
 
 
 def is_closed_over(browser: Browser, incident_id: str, unit_id: str) -> bool:
@@ -140,7 +140,7 @@ def test_two_open_incidents_have_separate_members(
         assert par(browser, harbour) == {"Carl Berg": "not_yet"}
         greet(browser, units[0], make_position)
         walk(units, make_position, 15, 25)
-        units[1].say(UnitEvent(units[1].stamper.header(), EventKind.MAYDAY))
+        units[1].say(UnitEvent(units[1].header_factory.header(), EventKind.MAYDAY))
         until(lambda: browser.call("GET", "/alarms"), "the mayday is raised")
         order = {"kind": "evacuate", "target": {"everyone": True}, "incident_id": lane}
         sent = browser.call("POST", "/commands", json=order)

@@ -56,7 +56,7 @@ def test_people_and_emergencies_reach_a_tak_server(
         until(lambda: "no place" in health(browser)["text"], "the console says what is missing")
         assert not [one for one in client.events if one.kind.startswith("a-")]
         browser.call("PUT", "/site/anchor", json=ANCHOR)
-        unit.say(make_position(header=unit.stamper.header(), north_m=7.0))
+        unit.say(make_position(header=unit.header_factory.header(), north_m=7.0))
         event = client.wait_for(lambda one: one.uid == PERSON, "the person is there")
         checked = check_event(event.raw)
         callsign = checked.find("detail/contact")
@@ -64,7 +64,7 @@ def test_people_and_emergencies_reach_a_tak_server(
         assert callsign.get("callsign") == "Ada"
         assert float(checked[0].get("lat", "")) == pytest.approx(52.5, abs=1e-3)
 
-        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
         client.wait_for(lambda one: one.uid == ALERT and one.kind == "b-a-o-tbl", "the alert")
         (alarm,) = browser.call("GET", "/alarms")
         seen = {"last_raised_ms": alarm["last_raised_ms"]}
@@ -102,11 +102,11 @@ def test_newest_events_are_sent_after_an_outage_of_the_server(
             ]
 
         until(away, "an alarm tells that it is away")
-        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        unit.say(UnitEvent(unit.header_factory.header(), EventKind.MAYDAY))
         tak.start()
         with TakClient(tak.port) as client:
             until(lambda: client.latest(ALERT), "the emergency of before comes")
-            unit.say(make_position(header=unit.stamper.header()))
+            unit.say(make_position(header=unit.header_factory.header()))
             until(lambda: client.latest(PERSON), "the person comes")
         until(lambda: away()[0]["state"] == "resolved", "the alarm is over")
 

@@ -14,7 +14,7 @@ from edge.agent.command_handler import CommandHandler
 from shared.channels import COMMAND
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply, CommandState
 from shared.messages.station import SendCommand
 from tests.rig.station_script import Script
@@ -38,9 +38,9 @@ class Radio:
 
     def restart(self) -> None:
         self.boot_id += 1
-        stamper = Stamper(U, self.boot_id, self.clock)
+        header_factory = HeaderFactory(U, self.boot_id, self.clock)
         self.desk = CommandHandler(
-            stamper, lambda rate_hz: self.rates.update([rate_hz]), self.journal
+            header_factory, lambda rate_hz: self.rates.update([rate_hz]), self.journal
         )
 
     def send(self, kind: CommandKind) -> None:

@@ -58,8 +58,8 @@ from base_station.views.station import StationFacts, snapshot
 from base_station.views.wire import Delta, Snapshot
 from shared.bus_memory import MemoryRouter
 from shared.clock import Clock
-from shared.envelope import Stamper
 from shared.errors import UserError
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     STATION_ID,
     AlarmChange,
@@ -85,7 +85,7 @@ class SteppedEngine:
         self._projection = projection
         self._roster = roster
         self._hub = hub
-        self._stamper = Stamper(STATION_ID, 1, clock)
+        self._header_factory = HeaderFactory(STATION_ID, 1, clock)
         self._pipeline = StationPipeline(ALARMS, FUSERS[0])
         self._lock = threading.RLock()
         self._seq = 0
@@ -138,10 +138,10 @@ class SteppedEngine:
         return done
 
     def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
-        self.receive(ExternalMarkers(self._stamper.header(), markers, removed))
+        self.receive(ExternalMarkers(self._header_factory.header(), markers, removed))
 
     def _do(self, by: str, action: Action, action_id: str) -> ActionResult:
-        header = self._stamper.header()
+        header = self._header_factory.header()
         action_id = action_id or f"action-{header.seq}"
         outputs = self.receive(OperatorAction(header, action_id, by, action))
         refused = next((one for one in outputs if isinstance(one, Refused)), None)

@@ -29,7 +29,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import channel_of
 from shared.clock import Clock, SystemClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentPolicy
 from shared.messages import STATION_ID, Message
 from shared.messages.station import Action
@@ -107,8 +107,8 @@ class LiveStation:
             "muster/v1/**", without_text_of_commands(self.feed.offer)
         )
         self._links = LivenessMonitor(self.bus, lambda *_: None, clock)
-        stamper = Stamper(STATION_ID, clock.utc_ns(), clock)
-        self.downlink = CommandSender(self.bus, stamper, clock)
+        header_factory = HeaderFactory(STATION_ID, clock.utc_ns(), clock)
+        self.downlink = CommandSender(self.bus, header_factory, clock)
         saved = self.archive().latest()
         self.pipeline = make_pipeline(saved.pipeline if saved else None)
         self.drive = StationEngine(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import AlarmChange, AlarmState, FusedPosition, Header, OperatorAction
 from shared.messages.station import (
     Action,
@@ -34,11 +34,11 @@ def fused(t_s: float, north_m: float) -> FusedPosition:
 
 
 def acted(t_s: float, *actions: Action) -> Projection:
-    stamper = Stamper("station", round(t_s), ManualClock())
+    header_factory = HeaderFactory("station", round(t_s), ManualClock())
     return Projection(
         round(t_s * NS_PER_S),
         actions=tuple(
-            OperatorAction(header(t_s), f"{t_s}-{stamper.header().seq}", "mia", action)
+            OperatorAction(header(t_s), f"{t_s}-{header_factory.header().seq}", "mia", action)
             for action in actions
         ),
     )

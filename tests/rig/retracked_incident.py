@@ -16,7 +16,7 @@ from edge.sources.registry import open_source
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentPolicy, SegmentWriter
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart
 from tests.rig.reported_incident import write_log
@@ -75,7 +75,7 @@ def unit(folder: Path, unit_id: str, scenario: str, duration_s: float) -> Iterat
     pipeline = TrackerPipeline(
         UnitIdentity("test", config.source, tracking.name, sensors),
         tracking.tracker,
-        Stamper(unit_id, BOOT_ID, ManualClock(START_NS)),
+        HeaderFactory(unit_id, BOOT_ID, ManualClock(START_NS)),
         config.position_rate_hz,
         foot_sensor=tracking.foot_sensor,
         worn_on=tracking.worn_on,

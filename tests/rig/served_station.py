@@ -21,7 +21,7 @@ def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
     """Until the unit is linked, what it says is lost."""
 
     def is_received() -> bool:
-        unit.say(make_position(header=unit.stamper.header()))
+        unit.say(make_position(header=unit.header_factory.header()))
         return bool(browser.call("GET", "/health")["messages"])
 
     until(is_received, "the unit is heard")
@@ -29,7 +29,7 @@ def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
 
 def walk(unit: Unit, make_position: MakePosition, from_m: int, to_m: int) -> None:
     for north_m in range(from_m, to_m):
-        unit.say(make_position(header=unit.stamper.header(), north_m=float(north_m)))
+        unit.say(make_position(header=unit.header_factory.header(), north_m=float(north_m)))
         time.sleep(0.1)
 
 

@@ -14,7 +14,7 @@ from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
 from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Activity,
     EventKind,
@@ -47,23 +47,23 @@ class Wearer:
 
     def __init__(self, unit_id: str, clock: Clock) -> None:
         self.unit_id = unit_id
-        self._stamper = Stamper(unit_id, secrets.randbits(63), clock)
+        self._header_factory = HeaderFactory(unit_id, secrets.randbits(63), clock)
         self._first_ns = clock.monotonic_ns()
         self._radius_m = random.uniform(*_RADII_M)
 
     def introduction(self) -> Message:
-        return message_factory.description(self._stamper.header())
+        return message_factory.description(self._header_factory.header())
 
     def next_message(self) -> Message:
         """The next of its turn, captured now."""
-        header = self._stamper.header()
+        header = self._header_factory.header()
         turn = header.seq % _MESSAGES_A_TURN
         if turn == _STATUS_AT:
             return self._status(header)
         return Temperature(header, 21.5) if turn == _TEMPERATURE_AT else self._position(header)
 
     def mayday(self) -> Message:
-        return UnitEvent(self._stamper.header(), EventKind.MAYDAY)
+        return UnitEvent(self._header_factory.header(), EventKind.MAYDAY)
 
     def _status(self, header: Header) -> Status:
         return Status(

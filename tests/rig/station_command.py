@@ -14,7 +14,7 @@ from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Message
 from tests.rig.incident_closing import despite
 from tests.rig.loaded_program import Invocation, LoadedProgram
@@ -178,13 +178,13 @@ class Unit:
 
     def __init__(self, port: int, unit_id: str, boot_id: int = 1) -> None:
         self.bus = ZenohBus(UnitEndpoint((f"tcp/127.0.0.1:{port}",)))
-        self.stamper = Stamper(unit_id, boot_id, SystemClock())
+        self.header_factory = HeaderFactory(unit_id, boot_id, SystemClock())
         self._received = False
 
     def say(self, message: Message) -> None:
         """The first time it waits for the link: what is said without one is gone."""
         channel = channel_of(message)
-        key = channel.key(self.stamper.unit_id)
+        key = channel.key(self.header_factory.unit_id)
         if not self._received:
             until(lambda: self.bus.has_subscriber(key), "a station listens")
             self._received = True

@@ -17,7 +17,7 @@ from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.earth_field import EarthField
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.path_noise import PathNoise
 
 RATE_HZ = 100
@@ -75,9 +75,9 @@ def walk(n: int, start_s: float = 0.0, shake_mps2: float = 3.0) -> ImuBatch:
 
 def pipeline(tracker=None, rate_hz: float = 5.0) -> TrackerPipeline:
     identity = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR),))
-    stamper = Stamper("u1", 7, ManualClock())
+    header_factory = HeaderFactory("u1", 7, ManualClock())
     worn = OneSensorTracker(tracker or StraightAhead())
-    return TrackerPipeline(identity, worn, stamper, rate_hz, foot_sensor="")
+    return TrackerPipeline(identity, worn, header_factory, rate_hz, foot_sensor="")
 
 
 def steps(pipe, imu: ImuBatch, sizes: list[int]):

@@ -42,7 +42,7 @@ class Walk:
         self._unit.say(UnitEvent(self._header(), EventKind.MAYDAY))
 
     def _header(self) -> Header:
-        header = self._unit.stamper.header()
+        header = self._unit.header_factory.header()
         self.stated.add(header.seq)
         return header
 

@@ -14,7 +14,7 @@ from edge.simulation.simulation import Simulation
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Message, Position, Sighting
 from shared.messages.pins import PlaceBeacon, RemoveBeacon
 from shared.messages.station import OpenIncident, SetPlan, SetStart
@@ -38,7 +38,7 @@ def stated(simulation: Simulation) -> TimedMessages:
     identity = UnitIdentity("1", "passes-beacons", "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     unit = TrackerPipeline(
-        identity, OneSensorTracker(tracker), Stamper("FF-01", 7, ManualClock()), 2.0
+        identity, OneSensorTracker(tracker), HeaderFactory("FF-01", 7, ManualClock()), 2.0
     )
     batches = islice(simulation.batches(1.0), LASTS_S)
     messages = [message for batch in batches for message in unit.step(batch)]

@@ -31,7 +31,7 @@ from shared.bus_memory import MemoryRouter
 from shared.channels import NO_TRACKER, channel_of
 from shared.clock import ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 
 LIMIT_S = 600.0
 UP = dict(zip(AXES, np.vstack([(a, -a) for a in np.eye(3)]), strict=True))
@@ -94,13 +94,13 @@ def test_unit_is_calibrated_over_the_bus_from_its_raw_samples(tmp_path):
     assert listener.open(Event())
     source = BusSource("FF-01")
     handled = open_source("bench:3")
-    stamper = Stamper("FF-01", 7, ManualClock())
+    header_factory = HeaderFactory("FF-01", 7, ManualClock())
     pipeline = TrackerPipeline(
         UnitIdentity("1", "bench:3", NO_TRACKER, (FittedSensor(handled.description),)),
         OneSensorTracker(NoTracker()),
-        stamper,
+        header_factory,
         5.0,
-        raw_uplink=RawUplink(stamper),
+        raw_uplink=RawUplink(header_factory),
     )
     raw, done = SampleEncoder("FF-01", 7), Event()
 

@@ -20,7 +20,7 @@ from edge.simulation.factory import open_simulation
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import FusedPosition, Position
 from shared.messages.station import SetPlan, SetStart
 from tests.rig.station_script import Script
@@ -40,8 +40,8 @@ def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floa
     simulation = open_simulation(scenario)
     identity = UnitIdentity("1", scenario, "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
-    stamper = Stamper("FF-01", 7, ManualClock())
-    unit = TrackerPipeline(identity, OneSensorTracker(tracker), stamper, 2.0)
+    header_factory = HeaderFactory("FF-01", 7, ManualClock())
+    unit = TrackerPipeline(identity, OneSensorTracker(tracker), header_factory, 2.0)
     script = Script()
     script.register("FF-01")
     script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, 0.1))

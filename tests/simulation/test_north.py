@@ -18,7 +18,7 @@ from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Position
 from shared.messages.station import SetAnchor, SetStart
 from tests.bench.tracker.simulated_calibration import calibration_of
@@ -34,9 +34,9 @@ def positions_of(simulation: Simulation) -> list[Position]:
     anchor = load_building().anchor
     place = ApproximatePosition(round(anchor.lat_deg, 1), round(anchor.lon_deg, 1))
     identity = UnitIdentity("1", "simulated", "eskf", (FittedSensor(sensor, calibration),), place)
-    stamper = Stamper("u1", 7, ManualClock(NOW_NS))
+    header_factory = HeaderFactory("u1", 7, ManualClock(NOW_NS))
     pipeline = TrackerPipeline(
-        identity, OneSensorTracker(make_tracker("eskf", sensor)), stamper, 5.0
+        identity, OneSensorTracker(make_tracker("eskf", sensor)), header_factory, 5.0
     )
     messages = [*pipeline.start()]
     for batch in simulation.batches(0.5):

@@ -29,7 +29,7 @@ from edge.sources.recording import RecordingSource, read_truth
 from edge.tracker.registry import make_tracker
 from edge.tracker.track_rows import join_rows
 from shared.clock import NS_PER_S, SystemClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Position
 from tests.bench.phones.floor_plans import floor_plan
 
@@ -68,7 +68,7 @@ def publish_walk(trial: Path, tracker: str) -> PublishedPhone:
     source = RecordingSource(trial)
     worn = make_tracker(tracker, replace(source.description, place="hand"))
     rows = join_rows([worn.push(source.imu), worn.finish()])
-    publisher = PositionPublisher(Stamper("", 1, SystemClock()), RATE_HZ)
+    publisher = PositionPublisher(HeaderFactory("", 1, SystemClock()), RATE_HZ)
     publisher.set_path_noise(worn.path_noise)
     positions = publisher.push(rows, Timeline(mono_origin_ns=ORIGIN_NS))
     truth = read_truth(trial)

@@ -20,8 +20,8 @@ from edge.simulation.scenario import read_scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.registry import TRACKERS, make_tracker
 from shared.clock import NS_PER_S, SystemClock
-from shared.envelope import Stamper
 from shared.errors import UserError
+from shared.header_factory import HeaderFactory
 from shared.published_walk import PublishedWalk, write_walk
 
 
@@ -50,7 +50,7 @@ def bench_published(
 def published(simulation: Simulation, rate_hz: float) -> PublishedWalk:
     """By the default tracker."""
     tracker = make_tracker(TRACKERS[0].name, simulation.description)
-    stream, timeline = PositionPublisher(Stamper("", 1, SystemClock()), rate_hz), Timeline()
+    stream, timeline = PositionPublisher(HeaderFactory("", 1, SystemClock()), rate_hz), Timeline()
     positions = []
     for batch in simulation.batches():
         positions += stream.push(tracker.push(batch.imu), timeline)

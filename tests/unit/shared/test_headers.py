@@ -7,8 +7,8 @@ import pytest
 from shared.channels import OPERATOR, TEMPERATURE
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import decode, encode, header_of
-from shared.envelope import Stamper
 from shared.errors import WireError
+from shared.header_factory import HeaderFactory
 from shared.messages import STATION_ID, Header, OperatorAction, Temperature
 from shared.messages.muster.v1 import header_pb2, station_pb2
 from shared.messages.station import RegisterUnit
@@ -51,9 +51,9 @@ def test_sender_is_known_for_any_content_after_the_header(number: int) -> None:
     assert (found.unit_id, found.boot_id, found.seq) == ("FF-01", 7, 3)
 
 
-def test_earlier_capture_keeps_its_time(clock: ManualClock, stamper: Stamper) -> None:
+def test_earlier_capture_keeps_its_time(clock: ManualClock, header_factory: HeaderFactory) -> None:
     clock.advance(60.0)
     then_ns = clock.monotonic_ns() - 5 * NS_PER_S
-    header = stamper.header(then_ns)
+    header = header_factory.header(then_ns)
     assert header.t_mono_ns == then_ns
     assert header.t_utc_ns == clock.utc_ns() - 5 * NS_PER_S

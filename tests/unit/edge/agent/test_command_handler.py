@@ -6,7 +6,7 @@ import pytest
 
 from edge.agent.command_handler import CommandHandler
 from shared.clock import ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Command, CommandKind, CommandState, Header
 
 
@@ -17,7 +17,7 @@ def rates() -> list[float]:
 
 @pytest.fixture
 def command_handler(rates) -> CommandHandler:
-    return CommandHandler(Stamper("u1", 1, ManualClock()), rates.append)
+    return CommandHandler(HeaderFactory("u1", 1, ManualClock()), rates.append)
 
 
 SENT_NS = 1_000_000
@@ -111,7 +111,7 @@ def test_one_press_answers_all_requests(command_handler):
 
 
 def test_unit_without_outputs_refuses_to_signal_its_place(rates):
-    handler = CommandHandler(Stamper("u1", 1, ManualClock()), rates.append, has_outputs=False)
+    handler = CommandHandler(HeaderFactory("u1", 1, ManualClock()), rates.append, has_outputs=False)
     reply = handler.take(command(CommandKind.LOCATE))
     assert (reply.state, reply.detail) == (
         CommandState.REFUSED, "this unit has no sounder and no light"

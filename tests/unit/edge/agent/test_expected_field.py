@@ -19,8 +19,8 @@ from edge.tracker.registry import NoTracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.config import load_config
 from shared.earth_field import EarthField
-from shared.envelope import Stamper
 from shared.errors import ConfigError
+from shared.header_factory import HeaderFactory
 
 REYKJAVIK = ApproximatePosition(64.15, -21.94)
 SYDNEY = ApproximatePosition(-33.87, 151.21)
@@ -106,8 +106,8 @@ def test_pipeline_gives_the_field_to_the_tracker_before_the_samples():
     identity = UnitIdentity(
         "1", "test", "t", (FittedSensor(SensorDescription("s", 100.0)),), place=REYKJAVIK
     )
-    stamper = Stamper("u1", 7, ManualClock(NOW_NS))
-    pipeline = TrackerPipeline(identity, OneSensorTracker(Listening()), stamper, 5.0)
+    header_factory = HeaderFactory("u1", 7, ManualClock(NOW_NS))
+    pipeline = TrackerPipeline(identity, OneSensorTracker(Listening()), header_factory, 5.0)
     pipeline.step(samples(3.0))
     pipeline.step(samples(3.1, (fix(SYDNEY, 3.15),)))
     assert reported == ["-11 from 3.0", "samples", "13 from 3.15", "samples"]

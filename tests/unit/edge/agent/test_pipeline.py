@@ -14,7 +14,7 @@ from edge.samples import SensorBatch, SensorDescription
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import Quality, Reason
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Activity,
     BodyPosture,
@@ -151,7 +151,7 @@ def test_trunk_that_lies_down_is_in_the_status_with_its_confidence():
     pipe = TrackerPipeline(
         UnitIdentity("1.0", "test", "straight", (sensor,)),
         OneSensorTracker(StraightAhead()),
-        Stamper("u1", 7, ManualClock()),
+        HeaderFactory("u1", 7, ManualClock()),
         5.0,
         worn_on="waist",
     )

@@ -24,7 +24,7 @@ from edge.samples import (
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import TrackBatch
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     EventKind,
     GpsFix,
@@ -165,7 +165,7 @@ def test_tracker_gets_calibrated_samples_and_the_description_names_the_calibrati
     calibration = Calibration("u1", "fake", made, gyroscope=gyroscope)
     identified = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR, calibration),))
     pipe = TrackerPipeline(
-        identified, OneSensorTracker(Listening()), Stamper("u1", 7, ManualClock()), 5.0
+        identified, OneSensorTracker(Listening()), HeaderFactory("u1", 7, ManualClock()), 5.0
     )
     (description,) = of(pipe.start(), UnitDescription)
     assert description.calibration == identity(calibration)

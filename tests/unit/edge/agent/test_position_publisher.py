@@ -13,7 +13,7 @@ from edge.clocks.timeline import Timeline
 from edge.samples import Floats, ImuBatch
 from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Position
 from shared.path_noise import PathNoise
 
@@ -22,7 +22,7 @@ LIVE = Timeline()
 
 
 def stream(rate_hz: float = 2.0) -> PositionPublisher:
-    return PositionPublisher(Stamper("u1", 7, ManualClock()), rate_hz)
+    return PositionPublisher(HeaderFactory("u1", 7, ManualClock()), rate_hz)
 
 
 def rows(position_n_m: Floats, from_s: float = 0.0) -> TrackBatch:

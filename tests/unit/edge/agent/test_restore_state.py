@@ -24,7 +24,7 @@ from edge.tracker.registry import make_tracker
 from shared.channels import EVENT, REPLY, channel_of
 from shared.clock import ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     CommandKind,
@@ -46,8 +46,8 @@ def boot(path: Path, *kinds: EventKind) -> bool:
     """A boot with these messages; returns whether it knew of a mayday at its begin."""
     journal = Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
     known = mayday_before(journal)
-    stamper = Stamper("u1", journal.boot_id, ManualClock())
-    events = [UnitEvent(stamper.header(), kind) for kind in kinds]
+    header_factory = HeaderFactory("u1", journal.boot_id, ManualClock())
+    events = [UnitEvent(header_factory.header(), kind) for kind in kinds]
     journal.append([JournalRow(e.header.seq, EVENT, 0, encode(e)) for e in events])
     journal.close()
     return known
@@ -72,8 +72,11 @@ def test_last_message_of_the_last_boot_counts(tmp_path, messages, latched):
 def test_unit_that_reported_its_failure_was_not_stopped(tmp_path):
     """Its service starts it again within a second, and its wearer still waits for help."""
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
-    stamper = Stamper("u1", journal.boot_id, ManualClock())
-    events = [UnitEvent(stamper.header(), MAYDAY), UnitEvent(stamper.header(), STOPPED, FAILED)]
+    header_factory = HeaderFactory("u1", journal.boot_id, ManualClock())
+    events = [
+        UnitEvent(header_factory.header(), MAYDAY),
+        UnitEvent(header_factory.header(), STOPPED, FAILED),
+    ]
     journal.append([JournalRow(e.header.seq, EVENT, 0, encode(e)) for e in events])
     journal.close()
     assert boot(tmp_path, STARTED)
@@ -115,7 +118,7 @@ def test_mayday_from_before_is_sent_again_first():
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
         OneSensorTracker(make_tracker("eskf", sensor)),
-        Stamper("u1", 1, ManualClock()),
+        HeaderFactory("u1", 1, ManualClock()),
         5.0,
         mayday=True,
     )
@@ -129,9 +132,9 @@ class DeskBoot:
     def __init__(self, path: Path) -> None:
         self.journal = Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
         self.rates: list[float] = []
-        stamper = Stamper("u1", self.journal.boot_id, ManualClock())
+        header_factory = HeaderFactory("u1", self.journal.boot_id, ManualClock())
         self.command_handler = CommandHandler(
-            stamper, self.rates.append, answers_before(self.journal)
+            header_factory, self.rates.append, answers_before(self.journal)
         )
 
     def take(self, command_id: str, kind: CommandKind) -> CommandReply:
@@ -179,9 +182,9 @@ class RateBoot:
         clock = ManualClock()
         clock.advance(on_s)
         self.known_hz = position_rate_before(journal, clock.monotonic_ns())
-        stamper = Stamper("u1", journal.boot_id, clock)
-        command_handler = CommandHandler(stamper, lambda _: None, answers_before(journal))
-        messages: list[UnitEvent | CommandReply] = [UnitEvent(stamper.header(), STARTED)]
+        header_factory = HeaderFactory("u1", journal.boot_id, clock)
+        command_handler = CommandHandler(header_factory, lambda _: None, answers_before(journal))
+        messages: list[UnitEvent | CommandReply] = [UnitEvent(header_factory.header(), STARTED)]
         for rate_hz in rates_hz:
             clock.advance(60.0)
             for kind in (CommandKind.SET_POSITION_RATE, CommandKind.LOCATE):
@@ -189,7 +192,7 @@ class RateBoot:
                 command = Command(header, name, kind, "anna", 0, position_rate_hz=rate_hz)
                 messages.append(command_handler.take(command))
         if detail:
-            messages.append(UnitEvent(stamper.header(), STOPPED, detail))
+            messages.append(UnitEvent(header_factory.header(), STOPPED, detail))
         journal.append(
             [JournalRow(one.header.seq, channel_of(one), 0, encode(one)) for one in messages]
         )
@@ -247,12 +250,13 @@ def stated_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock
     with closing(sqlite3.connect(path / "journal.sqlite")) as connection, connection:
         for _ in range(starts):
             clock.advance(1.0)
-            stamper = Stamper("u1", next(BOOTS), clock)
+            header_factory = HeaderFactory("u1", next(BOOTS), clock)
             made = connection.execute(
-                "INSERT INTO boot (boot_id, started_utc_ns) VALUES (?, 0)", (stamper.boot_id,)
+                "INSERT INTO boot (boot_id, started_utc_ns) VALUES (?, 0)",
+                (header_factory.boot_id,),
             )
             for kind in (STARTED, MAYDAY, FALL):
-                event = UnitEvent(stamper.header(), kind)
+                event = UnitEvent(header_factory.header(), kind)
                 connection.execute(
                     "INSERT INTO message VALUES (3, ?, ?, ?, 0, ?)",
                     (made.lastrowid, event.header.seq, EVENT.suffix, encode(event)),

@@ -21,7 +21,7 @@ from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.interface import TrackBatch
 from edge.tracker.track_rows import join_rows
 from shared.clock import NS_PER_S, SystemClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from tests.rig.inertial_walk import inertial_samples
 
 RATE_HZ = 2.0
@@ -37,7 +37,7 @@ def walked(simulation: Simulation) -> tuple[TrackBatch, np.ndarray, np.ndarray, 
     """Rows; times (n,) of what is published of them, its places (n, 2), and the true ones."""
     tracker = EskfTracker(simulation.description)
     rows = join_rows([tracker.push(inertial_samples(simulation)), tracker.finish()])
-    stream = PositionPublisher(Stamper("u1", 1, SystemClock()), RATE_HZ)
+    stream = PositionPublisher(HeaderFactory("u1", 1, SystemClock()), RATE_HZ)
     published = stream.push(rows, Timeline())
     places_m = np.array([(position.north_m, position.east_m) for position in published])
     t_s = np.array([position.header.t_mono_ns for position in published]) / NS_PER_S
@@ -79,7 +79,7 @@ def test_in_twenty_minutes_no_step_is_put_right_by_the_way_behind() -> None:
 
 def test_stated_covariance_covers_the_difference_to_the_best_path() -> None:
     rows, t_s, places_m, _ = walked(on_the_move(1, UNCALIBRATED_SENSORS))
-    stream = PositionPublisher(Stamper("u1", 1, SystemClock()), RATE_HZ)
+    stream = PositionPublisher(HeaderFactory("u1", 1, SystemClock()), RATE_HZ)
     last = stream.push(rows, Timeline())[-1]
     at = np.searchsorted(rows.t_ns - rows.t_ns[0], round(t_s[-1] * NS_PER_S))
     off_m = np.abs(places_m[-1] - rows.position_n_m[at, :2])

@@ -17,7 +17,7 @@ from edge.agent.wearer_notifier import WearerNotifier
 from edge.notifiers.outputs import PlayedNotice
 from edge.notifiers.signals import Notice, Signal
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     CommandKind,
@@ -66,7 +66,7 @@ class Rig:
         parts: tuple[Any, ...] = (
             self.outputs,
             OpenCommands(folder / "open_commands.json"),
-            CommandHandler(Stamper("u1", 1, self.clock), None, known, maydays),
+            CommandHandler(HeaderFactory("u1", 1, self.clock), None, known, maydays),
             maydays,
             self.pipeline,
             self.link,

@@ -19,7 +19,7 @@ from edge.simulation.imu import GRAVITY_MPS2
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import TrackBatch
 from shared.clock import ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from tests.rig.calibration_steps import MADE, known
 from tests.rig.straight_tracker import StraightAhead, walk
 
@@ -150,7 +150,7 @@ def test_a_unit_s_tracker_is_given_samples_of_which_the_temperature_has_been_hel
         "1.0", "test", "straight", (FittedSensor(SENSOR, warm_calibration(20.0)),)
     )
     pipe = TrackerPipeline(
-        identity, OneSensorTracker(Noting()), Stamper("u1", 7, ManualClock()), 5.0
+        identity, OneSensorTracker(Noting()), HeaderFactory("u1", 7, ManualClock()), 5.0
     )
     for degc in (25.0, np.nan):
         pipe.step(SensorBatch(replace(walk(1), imu_temperature_degc=np.array([degc]))))

@@ -21,7 +21,7 @@ from edge.samples import ImuBatch, SensorBatch, SensorDescription
 from edge.sources.black_box import BlackBoxSource
 from edge.storage.black_box.black_box import BlackBox
 from shared.clock import ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import Header, RawImu, UnitDescription
 from shared.messages.muster.v1 import imu_pb2, unit_description_pb2
 
@@ -67,7 +67,7 @@ def test_the_black_box_plays_each_sensor_under_its_name(tmp_path: Path) -> None:
 
 
 def test_the_uplink_mixes_no_sensors_in_a_message() -> None:
-    uplink = RawUplink(Stamper("u1", 7, ManualClock()))
+    uplink = RawUplink(HeaderFactory("u1", 7, ManualClock()))
     sent: list[RawImu] = []
     for batch in interleaved():
         for row in range(len(batch.imu)):

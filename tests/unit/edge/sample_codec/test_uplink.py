@@ -13,7 +13,7 @@ from edge.sample_codec.uplink import RawUplink
 from edge.samples import ImuBatch
 from shared.channels import IMU
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import RawImu
 from tests.rig.calibration_steps import known
 
@@ -28,7 +28,7 @@ def samples(count: int, rate_hz: float, from_s: float = 0.0) -> ImuBatch:
 
 
 def sent(imu: ImuBatch, at_once: int) -> list[RawImu]:
-    uplink = RawUplink(Stamper("u1", 1, ManualClock()))
+    uplink = RawUplink(HeaderFactory("u1", 1, ManualClock()))
     messages = []
     for first in range(0, len(imu), at_once):
         messages += uplink.push(imu.part(slice(first, first + at_once)), LIVE)
@@ -56,14 +56,14 @@ def test_two_samples_that_fill_a_period_are_a_message() -> None:
 
 @pytest.mark.parametrize("from_s", [0.5, -0.5])
 def test_no_message_goes_across_a_hole_or_a_clock_that_was_set(from_s: float) -> None:
-    uplink = RawUplink(Stamper("u1", 1, ManualClock()))
+    uplink = RawUplink(HeaderFactory("u1", 1, ManualClock()))
     first, second = samples(3, 200.0), samples(3, 200.0, from_s)
     messages = [*uplink.push(first, LIVE), *uplink.push(second, LIVE), *uplink.finish(LIVE)]
     assert [one.t_ns.tolist() for one in messages] == [first.t_ns.tolist(), second.t_ns.tolist()]
 
 
 def test_a_sensor_that_falls_silent_begins_a_message() -> None:
-    uplink = RawUplink(Stamper("u1", 1, ManualClock()))
+    uplink = RawUplink(HeaderFactory("u1", 1, ManualClock()))
     parts = samples(3, 200.0), replace(samples(3, 200.0, 0.015), pressure_pa=None)
     messages = [message for part in parts for message in uplink.push(part, LIVE)]
     messages += uplink.finish(LIVE)

@@ -14,7 +14,7 @@ from mcap.records import Chunk
 from shared.channels import STATUS
 from shared.clock import ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import (
     SegmentReader,
     SegmentWriter,
@@ -30,8 +30,8 @@ def temperature(header: Header) -> bytes:
 
 
 def test_any_reader_of_mcap_sees_key_schema_times_and_sequence(tmp_path: Path) -> None:
-    stamper = Stamper("anna", 77, ManualClock(utc_ns=T0_NS))
-    payload = temperature(stamper.header())
+    header_factory = HeaderFactory("anna", 77, ManualClock(utc_ns=T0_NS))
+    payload = temperature(header_factory.header())
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS + 5, KEY, payload)
     writer.close()

@@ -24,8 +24,8 @@ from edge.storage.black_box.station_time import read_clock_offset
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
 from shared.errors import RecordingError
+from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentWriter
 from shared.messages import Message, Position, Status, UnitEvent
 from tests.rig.waiting import PATIENCE_S, until
@@ -68,7 +68,7 @@ def messages_of(source: Source, raw: SampleEncoder, batches: list[SensorBatch]) 
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
         OneSensorTracker(make_tracker("eskf", sensor)),
-        Stamper("u1", 1, ManualClock()),
+        HeaderFactory("u1", 1, ManualClock()),
         5.0,
     )
     messages: list[Message] = []

@@ -18,7 +18,7 @@ from edge.storage.journal.server import JournalServer
 from shared.channels import EVENT, POSITION
 from shared.clock import ManualClock
 from shared.codec import encode
-from shared.envelope import Stamper
+from shared.header_factory import HeaderFactory
 from shared.messages import EventKind, JournalChunk, JournalIndex, UnitEvent
 
 COUNT = 60
@@ -28,8 +28,8 @@ ALERT_AT = 30  # all others are positions
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     """A journal of one boot, with a mayday in its middle."""
-    stamper = Stamper("u1", 1, ManualClock())
-    mayday = encode(UnitEvent(stamper.header(), EventKind.MAYDAY))
+    header_factory = HeaderFactory("u1", 1, ManualClock())
+    mayday = encode(UnitEvent(header_factory.header(), EventKind.MAYDAY))
     path = tmp_path / "journal.sqlite"
     journal = Journal(path, lambda: 1, 1_000, 10**8)
     positions = [JournalRow(seq, POSITION, 0, bytes(50)) for seq in range(1, COUNT + 1)]

@@ -1,4 +1,4 @@
-"""Stamps messages: who says it, which one it is, and when."""
+"""Header of each message that a program sends: sender, boot, sequence number and times."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from shared.clock import Clock
 from shared.messages import Header
 
 
-class Stamper:
+class HeaderFactory:
     """Gives out headers with consecutive sequence numbers for one sender and one boot."""
 
     def __init__(
         self, unit_id: str, boot_id: int, clock: Clock, utc_std_s: Callable[[], float] = lambda: 0.0
     ) -> None:
-        """``utc_std_s``: how well ``clock`` knows UTC now; 0: nothing is known of that."""
+        """``utc_std_s``: standard error of ``clock`` against UTC now; 0: unknown."""
         self._unit_id = unit_id
         self._boot_id = boot_id
         self._clock = clock
