@@ -15,26 +15,33 @@ _MEASURED_OVER_NS = NS_PER_S
 
 
 class DeltaPace:
-    """Interval of deltas by what one costs, and by whether the process has a core's time left."""
+    """When the next delta is due, by what the last one cost, and by whether the process has a
+    core's time left.  Times are those of a monotonic clock.
+    """
 
-    def __init__(self) -> None:
-        self._since_ns: int | None = None
-        self._process_ns = 0
+    def __init__(self, now_ns: int, process_ns: int) -> None:
+        self.due_ns = now_ns
+        self.urgent_due_ns = now_ns  # with alarms or commands
+        self._since_ns, self._process_ns = now_ns, process_ns
         self._is_busy = False
 
-    def interval_ns(self, now_ns: int, spent_ns: int, process_ns: int) -> int:
-        """Time until the next delta after one at ``now_ns``, a monotonic clock.
+    def send_at_once(self) -> None:
+        self.due_ns = 0
 
-        ``spent_ns``: what it took of the thread's processor time.  ``process_ns``: processor time
-        of all threads so far.
+    def note_sent(self, now_ns: int, spent_ns: int, process_ns: int) -> None:
+        """``spent_ns``: what the delta took of the thread's processor time.  ``process_ns``:
+        processor time of all threads so far.
         """
         self._measure(now_ns, process_ns)
         often_ns = USUAL_NS if self._is_busy else min(spent_ns * OFTEN_SHARE, USUAL_NS)
-        return max(SHORTEST_NS, often_ns, spent_ns * MOST_SHARE)
+        interval_ns = max(SHORTEST_NS, often_ns, spent_ns * MOST_SHARE)
+        late_ns = now_ns - self.due_ns
+        # Counted from when it was due: a busy machine sends each late, and else sent fewer.
+        from_ns = self.due_ns if 0 <= late_ns < interval_ns else now_ns
+        self.due_ns = from_ns + interval_ns
+        self.urgent_due_ns = now_ns + interval_ns // 2
 
     def _measure(self, now_ns: int, process_ns: int) -> None:
-        if self._since_ns is None:
-            self._since_ns, self._process_ns = now_ns, process_ns
         elapsed_ns = now_ns - self._since_ns
         if elapsed_ns >= _MEASURED_OVER_NS:
             self._is_busy = process_ns - self._process_ns > _BUSY_CORE_SHARE * elapsed_ns

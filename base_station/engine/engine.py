@@ -80,8 +80,6 @@ class _Due:
 
     tick_ns: int
     sooner_tick_ns: int  # where there are changes
-    delta_ns: int
-    urgent_delta_ns: int  # with alarms or commands
     checkpoint_ns: int
 
 
@@ -118,10 +116,10 @@ class StationEngine:
             daemon=False,
         )
         now_ns = self._last_run_ns = ports.clock.monotonic_ns()
-        self._due = _Due(now_ns, now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
+        self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
-        self._delta_pace = DeltaPace()
+        self._delta_pace = DeltaPace(now_ns, time.process_time_ns())
         self._health_due = False  # the next delta carries the station's health
 
     # ---- from any thread
@@ -214,7 +212,7 @@ class StationEngine:
     def _run_once(self) -> bool:
         """Take what came, then do whatever is due; whether anything came."""
         clock, due = self._ports.clock, self._due
-        wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
+        wait_ns = min(due.tick_ns, self._delta_pace.due_ns) - clock.monotonic_ns()
         records = self._ports.feed.take(max(wait_ns, 0) / NS_PER_S)
         follows = self._ports.feed.follows
         for t_ns, key, payload in records:
@@ -239,16 +237,14 @@ class StationEngine:
             spent_ns = clock.monotonic_ns() - now_ns
             due.checkpoint_ns = now_ns + max(CHECKPOINT_NS, spent_ns * CHECKPOINTS_SHARE)
         self._flush_urgent()
-        if now_ns >= (due.urgent_delta_ns if self._publisher.is_urgent else due.delta_ns):
+        pace = self._delta_pace
+        if now_ns >= (pace.urgent_due_ns if self._publisher.is_urgent else pace.due_ns):
             before_ns = time.thread_time_ns()
             try:
                 self._publish()
             finally:  # where it cannot be published, too
-                interval_ns = self._delta_pace.interval_ns(
-                    now_ns, time.thread_time_ns() - before_ns, time.process_time_ns()
-                )
-                due.delta_ns = now_ns + interval_ns
-                due.urgent_delta_ns = now_ns + interval_ns // 2
+                spent_ns = time.thread_time_ns() - before_ns
+                pace.note_sent(now_ns, spent_ns, time.process_time_ns())
         while self._snapshot_requests:
             snapshot = (
                 self._publisher.snapshot()
@@ -309,7 +305,7 @@ class StationEngine:
             if isinstance(done.action, _CHANGES_ORDERS):
                 self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
             done.answer()
-            self._due.delta_ns = 0  # its operator sees it at once
+            self._delta_pace.send_at_once()  # its operator sees it at once
 
     def _take_external(self) -> None:
         for _ in range(len(self._external)):
