@@ -72,4 +72,5 @@ def open_archived_log(
         report=report,
         imports=ArchivedImports(folder.imports, archive, entry),
         radio=ArchivedRadio(folder.radio, archive, entry),
+        log_of=lambda _: (log, defects),
     )

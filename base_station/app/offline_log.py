@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -53,6 +54,7 @@ from shared.mcap_log import (
 
 Report = Callable[[str], None]
 Progress = Callable[[float], None]
+OpenedLog = tuple[LogFeed, LogDefects]
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,17 @@ class OfflineLog:
     report: Report
     imports: ImportFolder  # files that were brought in
     radio: RadioLog
+    log_of: Callable[[str], OpenedLog]  # by incident: its copy in an archive, or the folder's
+
+    def of_incident(self, incident_id: str) -> OfflineLog:
+        """With the log that has this incident.
+
+        Raises ArchiveError where the archive does not answer, LogError where there is no log.
+        """
+        log, defects = self.log_of(incident_id)
+        is_copy = not isinstance(log, FolderFeed)  # states in it are of this incident alone
+        scratch = self.scratch / incident_id if is_copy else self.scratch
+        return replace(self, log=log, defects=defects, scratch=scratch)
 
     def archive(self, *, recompute: bool = False) -> Archive:
         """``recompute``: decisions are made again, instead of playing the recorded pictures.
@@ -113,49 +126,50 @@ def open_offline_log(
     folder, left_out = _folder_with_log(path, scratch)
     server = noted_server(folder.database)
     damage = "" if server is not None else damage_of(folder.database)
+
+    def opened(store: Database, *, keeps_result: bool) -> OfflineLog:
+        @cache
+        def own_log() -> OpenedLog:
+            return _open_log(
+                folder, store, incident_id, left_out, report, decides_again=decides_again
+            )
+
+        @cache
+        def log_of(incident_id: str) -> OpenedLog:
+            return _archived_log(folder, store, incident_id, report) or own_log()
+
+        log, defects = log_of(incident_id or _oldest_closed(store))
+        return OfflineLog(
+            folder,
+            store,
+            keeps_result=keeps_result,
+            scratch=scratch,
+            log=log,
+            defects=defects,
+            report=report,
+            imports=ImportFolder(folder.imports),
+            radio=RadioLog(folder.radio),
+            log_of=log_of,
+        )
+
     if damage:
         report(f"the database is damaged ({damage}); the log is read instead")
     elif server is not None or (in_place and _is_writable(folder)):
-        store = _opened(folder, closing, report)
-        if store is not None and not _lacks_incident(store, folder, incident_id):
-            log, defects = _archived_log(folder, store, incident_id, report) or _open_log(
-                folder, store, left_out, report, decides_again=decides_again
-            )
-            return OfflineLog(
-                folder,
-                store,
-                keeps_result=True,
-                scratch=scratch,
-                log=log,
-                defects=defects,
-                report=report,
-                imports=ImportFolder(folder.imports),
-                radio=RadioLog(folder.radio),
-            )
+        there = _opened(folder, closing, report)
+        if there is not None and not _lacks_incident(there, folder, incident_id):
+            return opened(there, keeps_result=True)
     copy = scratch / "station.sqlite"
     if not damage and server is None:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
-    log, defects = _archived_log(folder, store, incident_id, report) or _open_log(
-        folder, store, left_out, report, decides_again=decides_again
-    )
+    offline_log = opened(store, keeps_result=False)
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
     if path.is_file() and (incident := read_incident_file(path)) is not None:
         Roster(store, SystemClock()).bring_people(incident.people)
         _take_enclosed(path, incident.incident_id, folder)
-    return OfflineLog(
-        folder,
-        store,
-        keeps_result=False,
-        scratch=scratch,
-        log=log,
-        defects=defects,
-        report=report,
-        imports=ImportFolder(folder.imports),
-        radio=RadioLog(folder.radio),
-    )
+    return offline_log
 
 
 def _take_enclosed(file: Path, incident_id: str, folder: DataFolder) -> None:
@@ -180,7 +194,7 @@ def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database 
 
 def _archived_log(
     folder: DataFolder, store: Database, incident_id: str, report: Report
-) -> tuple[LogFeed, LogDefects] | None:
+) -> OpenedLog | None:
     """The copy of an incident whose log is not here any more; None: it is, or there is no copy.
 
     Raises ArchiveError where the archive does not answer.
@@ -202,16 +216,35 @@ def _archived_log(
     return opened_copy(archived, defects), defects
 
 
+def _oldest_closed(store: Database) -> str:
+    """Empty: no incident is known to be closed."""
+    incidents = Records(store, SystemClock()).incidents()
+    closed = [one for one in incidents if one.closed_ns is not None]
+    return min(closed, key=lambda one: one.opened_ns).incident_id if closed else ""
+
+
 def _open_log(
     folder: DataFolder,
     store: Database,
+    incident_id: str,
     left_out: Mapping[Path, str],
     report: Report,
     *,
     decides_again: bool,
-) -> tuple[LogFeed, LogDefects]:
-    """Opens the log with its known defects, which are reported."""
-    known = known_segments_of(Records(store, SystemClock()))
+) -> OpenedLog:
+    """Opens the log with its known defects, which are reported.  Raises LogError where the folder
+    has none any more, UserError where it never had the incident either.
+    """
+    records = Records(store, SystemClock())
+    if not segment_paths(folder.log):
+        if incident_id:
+            records.require_incident(incident_id)
+        raise LogError(
+            f"the log in {folder.path} is gone, and no archive is known that has "
+            f"{incident_id or 'its incidents'}: bring the segments back, or give a file of the "
+            "incident (muster base archive fetch ARCHIVE INCIDENT incident.mcap)"
+        )
+    known = known_segments_of(records)
     defects = LogDefects(
         folder.log, known, is_written=FolderLock.is_held(folder.path), on_defect=report
     )
@@ -231,6 +264,8 @@ def _folder_with_log(path: Path, scratch: Path) -> tuple[DataFolder, Mapping[Pat
     folder = DataFolder(path)
     if segment_paths(folder.log):
         return folder, {}
+    if folder.log.is_dir() and not [*folder.log.glob("*.mcap")] and folder.has_database():
+        return folder, {}  # its incidents may be in an archive
     source = folder.log if folder.log.is_dir() else path
     files = [path] if path.is_file() else sorted(source.glob("*.mcap"))
     if not files:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from base_station.app.offline_log import open_offline_log
 from base_station.fusion import FUSERS
+from base_station.replay.playback import Archive
 from base_station.replay.rehearsal.rehearse import Progress, Rehearser
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
@@ -42,7 +43,9 @@ def open_rehearsal(
         incidents = [one for one in records.incidents() if one.closed_ns is not None]
     if not incidents:
         raise UserError("no incident was closed in this log; name an open one with --incident")
-    rehearser = Rehearser(
-        offline_log.archive(), FUSERS[0], records, offline_log.folder.recorded_until_ns
-    )
+
+    def archive_of(incident: IncidentRow) -> Archive:
+        return offline_log.of_incident(incident.incident_id).archive()
+
+    rehearser = Rehearser(archive_of, FUSERS[0], records, offline_log.folder.recorded_until_ns)
     return OpenedRehearsal(rehearser, sorted(incidents, key=lambda one: one.opened_ns))

@@ -38,13 +38,16 @@ class DataFolder:
         """The file, beside which a note may name a server instead (``db.opening``); StoreError
         where no station has ever run here.
         """
-        if not self.database.exists() and noted_server(self.database) is None:
+        if not self.has_database():
             raise StoreError(
                 f"there is no station's database in {self.path}; give the folder with --data, or "
                 "start the station there once"
             )
         refuse_links(self.path)
         return self.database
+
+    def has_database(self) -> bool:
+        return self.database.exists() or noted_server(self.database) is not None
 
     def segments(self) -> Iterator[SegmentInfo]:
         """The log's, in the order of writing; the last one is open while a station writes it.

@@ -40,17 +40,19 @@ _NS_PER_HOUR = 3600 * NS_PER_S
 
 
 class Rehearser:
-    """Rehearses sets of thresholds over the incidents of one log."""
+    """Rehearses sets of thresholds over the incidents of one station."""
 
     def __init__(
         self,
-        archive: Archive,
+        archive_of: Callable[[IncidentRow], Archive],
         fuser_kind: FuserKind,
         records: Records,
         recorded_until_ns: Callable[[], int],
     ) -> None:
-        """``recorded_until_ns``: where an open incident ends."""
-        self._archive = archive
+        """``archive_of``: the log that has an incident.  ``recorded_until_ns``: where an open
+        incident ends.
+        """
+        self._archive_of = archive_of
         self._fuser_kind = fuser_kind
         self._records = records
         self._recorded_until_ns = recorded_until_ns
@@ -81,7 +83,7 @@ class Rehearser:
             rehearsed,
             tuple(_point(rules, number, passes, worn_h) for number in range(len(points))),
             swept,
-            tuple(self._archive.flaws()),
+            tuple(dict.fromkeys(flaw for one in passes for flaw in one.flaws)),
         )
 
     def _pass(
@@ -104,7 +106,8 @@ class Rehearser:
                 make_alarms=lambda rules: RehearsedAlarms(rules, watch),
             )
 
-        playback = Playback(replace(self._archive, make_pipeline=make_pipeline))
+        archive = self._archive_of(incident)
+        playback = Playback(replace(archive, make_pipeline=make_pipeline))
         for _ in playback.seek(from_ns):
             pass
         if all(one.problem for one in rehearsals):
@@ -122,6 +125,7 @@ class Rehearser:
             ),
             recorded,
             rehearsals,
+            tuple(archive.flaws()),
         )
 
 
@@ -129,11 +133,16 @@ class _Pass:
     """Results of one incident."""
 
     def __init__(
-        self, incident: RehearsedIncident, recorded: Rehearsal, rehearsals: Sequence[Rehearsal]
+        self,
+        incident: RehearsedIncident,
+        recorded: Rehearsal,
+        rehearsals: Sequence[Rehearsal],
+        flaws: Sequence[str],
     ) -> None:
         self.incident = incident
         self.recorded = recorded
         self.rehearsals = rehearsals
+        self.flaws = flaws
 
 
 def _point(
