@@ -35,20 +35,12 @@ if TYPE_CHECKING:
     from base_station.config import StationConfig
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
-log = typer.Typer(help="The log's segments.", no_args_is_help=True)
-app.command("fetch-recording")(fetch_recording)
-app.command()(dispatch)
-app.command()(export)
-app.command("import")(import_)
-app.command()(report)
-app.command()(rehearse)
-app.command()(rerun)
-app.command()(search)
-app.add_typer(users, name="users")
-app.add_typer(unit_tokens, name="unit-tokens")
-app.add_typer(log, name="log")
-app.add_typer(foxglove, name="foxglove")
-app.add_typer(archive_commands, name="archive")
+log = typer.Typer(help="List the log's segments, or end torn ones.", no_args_is_help=True)
+
+# Headings of the list of commands.
+_OPERATION = "At a running station"
+_PAST = "Past incidents"
+_DATA = "Data of the station"
 
 ConfigOption = Annotated[
     Path | None, typer.Option(help="TOML file with settings; flags overrule it.")
@@ -68,7 +60,7 @@ def base() -> None:
     """The base station."""
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def serve(
     config: ConfigOption = None,
     data: DataOption = None,
@@ -97,7 +89,7 @@ def serve(
     run_station(settings, _announce, loading_router)
 
 
-@app.command()
+@app.command(rich_help_panel=_PAST)
 def replay(
     incident: Annotated[
         str, typer.Argument(help="Its id, as in the console, or a file that has it all (MCAP).")
@@ -134,7 +126,7 @@ def replay(
         )
 
 
-@app.command()
+@app.command(rich_help_panel=_DATA)
 def rebuild(data: Path = Path("muster-data")) -> None:
     """Make the queryable tables again from the log; people and users are kept."""
     from rich.progress import Progress  # noqa: PLC0415
@@ -149,7 +141,7 @@ def rebuild(data: Path = Path("muster-data")) -> None:
     typer.echo(f"{count} log records projected")
 
 
-@app.command()
+@app.command(rich_help_panel=_DATA)
 def backup(
     target: Annotated[Path, typer.Argument(help="A folder of its own for this station's copy.")],
     data: Path = Path("muster-data"),
@@ -157,7 +149,7 @@ def backup(
         bool, typer.Option("--radio", help="With the audio of the radio channels.")
     ] = False,
 ) -> None:
-    """Copy log, database and certificates, also while the station runs; again: new data only."""
+    """Copy log, database and certificates, also while the station runs; repeated: new data only."""
     from rich.progress import Progress  # noqa: PLC0415
 
     from base_station.app.backup import back_up  # noqa: PLC0415
@@ -180,7 +172,7 @@ def backup(
     done.require_whole()
 
 
-@app.command()
+@app.command(rich_help_panel=_DATA)
 def forget(
     what: Annotated[str, typer.Argument(help="A person's id or full name, or an incident's id.")],
     data: Path = Path("muster-data"),
@@ -208,9 +200,9 @@ def forget(
     typer.echo(f"forgotten: {done}")
 
 
-@app.command("compile")
+@app.command("compile", rich_help_panel=_OPERATION)
 def compile_() -> None:
-    """Compile the code for positions and trails now, so that the first station starts at once."""
+    """Compile the code for positions and trails now, so that the first start is quick."""
     from importlib import import_module  # noqa: PLC0415
 
     for compiled in (
@@ -221,12 +213,12 @@ def compile_() -> None:
         import_module(compiled)
 
 
-@app.command()
+@app.command(rich_help_panel=_PAST)
 def smooth(
     incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
     data: Path = Path("muster-data"),
 ) -> None:
-    """Work out an incident's trails again, from everything that is known afterwards."""
+    """Smooth an incident's trails by everything that became known afterwards."""
     from base_station.app import folder_commands as station  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), ExitStack() as closing:
@@ -246,7 +238,7 @@ def smooth(
     typer.echo(f"{len(made.tracks)} trails by {made.smoother}; {kept}")
 
 
-@app.command()
+@app.command(rich_help_panel=_PAST)
 def assess(
     incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
     data: Path = Path("muster-data"),
@@ -295,7 +287,7 @@ def recover(data: Path = Path("muster-data")) -> None:
 
 @log.command("list")
 def list_segments(data: Path = Path("muster-data")) -> None:
-    """The segments with their times and sizes; open is the one that a station writes."""
+    """List the segments with their times and sizes; a station is writing the open one."""
     from datetime import UTC, datetime  # noqa: PLC0415
 
     from base_station.storage.data_folder import DataFolder  # noqa: PLC0415
@@ -352,3 +344,18 @@ def _ask_to_confirm(what: str, about: str) -> None:
     answer = typer.prompt(question) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
     if answer != what:
         raise UserError(f"{answer!r} is not {what!r}; nothing was deleted")
+
+
+app.command(rich_help_panel=_OPERATION)(dispatch)
+app.command("fetch-recording", rich_help_panel=_OPERATION)(fetch_recording)
+app.add_typer(users, name="users", rich_help_panel=_OPERATION)
+app.add_typer(unit_tokens, name="unit-tokens", rich_help_panel=_OPERATION)
+app.command(rich_help_panel=_PAST)(search)
+app.command(rich_help_panel=_PAST)(report)
+app.command(rich_help_panel=_PAST)(export)
+app.command("import", rich_help_panel=_PAST)(import_)
+app.command(rich_help_panel=_PAST)(rerun)
+app.command(rich_help_panel=_PAST)(rehearse)
+app.add_typer(foxglove, name="foxglove", rich_help_panel=_PAST)
+app.add_typer(log, name="log", rich_help_panel=_DATA)
+app.add_typer(archive_commands, name="archive", rich_help_panel=_DATA)

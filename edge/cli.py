@@ -14,8 +14,10 @@ from shared.options import finite
 app = typer.Typer(
     help="One agent for each wearable.", no_args_is_help=True, pretty_exceptions_enable=False
 )
-app.command()(calibrate)
-app.command()(retrack)
+
+# Headings of the list of commands.
+_OPERATION = "On a unit"
+_DESK = "Elsewhere"
 
 
 Config = Annotated[Path | None, typer.Option(help="TOML file with settings; flags overrule it.")]
@@ -119,7 +121,7 @@ CheckSeconds = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print the findings for a script.")]
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def run(
     config: Config = None,
     unit: Unit = None,
@@ -173,7 +175,7 @@ def run(
     run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def check(
     config: Config = None,
     unit: Unit = None,
@@ -193,7 +195,7 @@ def check(
     for_s: CheckSeconds = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Check a unit before its wearer goes in: lay it down still; exit code 1: it is not ready."""
+    """Check a unit, lying still, before its wearer goes in; exit code 1: it is not ready."""
     # Only this command needs what these import, and they take their time.
     from edge.app.check import print_check  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
@@ -222,7 +224,7 @@ def check(
         raise typer.Exit(1)
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def enrol(
     picture: Annotated[
         Path, typer.Argument(help="The enrolment's QR code: a photo, or as the console saved it.")
@@ -231,7 +233,7 @@ def enrol(
         Path | None, typer.Option(help="The enrolment file; else NAME.enrolment.toml.")
     ] = None,
 ) -> None:
-    """Make an enrolment file of a picture, which each start of the unit reads at once."""
+    """Make the enrolment file from a photograph of its QR code."""
     from shared.enrolment import read_enrolment  # noqa: PLC0415
 
     enrolment = read_enrolment(picture)
@@ -240,9 +242,9 @@ def enrol(
     typer.echo(f"{target}: {enrolment.holder.value} {enrolment.name}; delete {picture}")
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def sources() -> None:
-    """List where samples can come from, and what can be read beside them."""
+    """List the sources of samples and the other sensors that a unit can read."""
     from edge.notifiers.registry import NOTIFIERS  # noqa: PLC0415
     from edge.sources.gnss.registry import RECEIVERS  # noqa: PLC0415
     from edge.sources.registry import SOURCES  # noqa: PLC0415
@@ -262,7 +264,7 @@ def sources() -> None:
         typer.echo(f"--output {output.scheme}:{output.argument}")
 
 
-@app.command()
+@app.command(rich_help_panel=_OPERATION)
 def trackers() -> None:
     """List the trackers."""
     from edge.tracker.registry import MULTI_SENSOR_TRACKERS, TRACKERS  # noqa: PLC0415
@@ -273,7 +275,7 @@ def trackers() -> None:
         typer.echo(f"{name:14} {summary}")
 
 
-@app.command()
+@app.command(rich_help_panel=_DESK)
 def plan() -> None:
     """Print the plan of the building in which simulated responders work, as GeoJSON."""
     from edge.simulation.building import plan_path  # noqa: PLC0415
@@ -281,9 +283,9 @@ def plan() -> None:
     typer.echo(plan_path().read_text())
 
 
-@app.command("compile")
+@app.command("compile", rich_help_panel=_OPERATION)
 def compile_() -> None:
-    """Compile the trackers now, so that the first agent starts at once."""
+    """Compile the trackers now, so that the first start is quick."""
     from edge.app.jit_warmup import compile_trackers  # noqa: PLC0415
 
     compile_trackers()
@@ -302,3 +304,7 @@ def _sensor_tables(given: list[str] | None) -> list[dict[str, str]] | None:
             )
         tables.append({"name": name, "source": source})
     return tables
+
+
+app.command(rich_help_panel=_OPERATION)(calibrate)
+app.command(rich_help_panel=_DESK)(retrack)

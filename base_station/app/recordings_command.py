@@ -30,7 +30,7 @@ def fetch_recording(
         list[str] | None, typer.Option(help="Where the station's router listens.")
     ] = None,
 ) -> None:
-    """Pull a unit's raw recording while the station runs; ended and given again, it goes on."""
+    """Pull a unit's raw recording while the station runs; started again, it continues."""
     from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn  # noqa: PLC0415
 
     from base_station.app.recordings_app import pull, since, window_of  # noqa: PLC0415

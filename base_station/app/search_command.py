@@ -26,7 +26,7 @@ def search(
     end: End = None,
     limit: Annotated[int, typer.Option(min=1, help="The newest so many.")] = 50,
 ) -> None:
-    """Find incidents; all that is given must be true of them.  Case and accents do not count.
+    """Find incidents that meet all criteria; case and accents do not count.
 
     Of an incident that is in an archive it prints which one; muster base archive list has more.
     """
