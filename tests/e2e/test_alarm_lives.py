@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, choose_theme, menu, press, strip
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
 
 HEAT = msgspec.structs.replace(scenes.bad_minute().alarms[2], alarm_id="heat:earlier")

@@ -7,7 +7,7 @@ from playwright.sync_api import expect
 
 from base_station.views import wire
 from tests.e2e import scenes
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import SCREENS, Stage
 
 

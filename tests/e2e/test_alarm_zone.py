@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 from base_station.views import wire
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, drawn, press, strip
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import Stage
 

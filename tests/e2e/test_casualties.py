@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 
 SIZES = ((1920, 1080), (1366, 768), (1024, 768), (390, 844), (844, 390))

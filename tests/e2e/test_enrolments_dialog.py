@@ -14,7 +14,7 @@ from base_station.security.pki.qr import qr_code, rows_of
 from shared.enrolment import Enrolment, parse_enrolment
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, close, confirm, menu
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.played_station import PlayedStation, answers
 from tests.e2e.stage import SCREENS, Stage
 

@@ -11,7 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.e2e import scenes
 from tests.e2e.console_files import CONSOLE
 from tests.e2e.console_page import barriers
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 
 LANGUAGES = CONSOLE / "src/language"

@@ -8,7 +8,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import menu
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import ANSWERS, Stage
 

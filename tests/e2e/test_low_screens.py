@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import SCREENS, Stage
 
 LOW = [name for name, (_, height_px) in SCREENS.items() if height_px < 480]

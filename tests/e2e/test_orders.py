@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 from base_station.views.wire import CommandView, Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, command, menu, press
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import ANSWERS, Stage
 
 ACKNOWLEDGED = dict.fromkeys(("FF-01", "FF-02", "FF-03"), "acknowledged")

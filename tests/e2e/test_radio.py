@@ -19,7 +19,7 @@ from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import ANSWERS, PAST, Stage
-from tests.e2e.test_replay_tells import begin_replay
+from tests.e2e.test_replay_display import begin_replay
 from tests.rig.tone_pattern import tone_pattern
 from tests.rig.waiting import PATIENCE_S, until
 

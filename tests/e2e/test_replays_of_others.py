@@ -6,7 +6,7 @@ from playwright.sync_api import expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, confirm, menu
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import ANSWERS, Stage
 
 OPEN = {"/replays": [scenes.replay("r1", "mia"), scenes.replay("r2", "chief")]}

@@ -16,7 +16,7 @@ from shared.messages import Position
 from tests.e2e import scenes
 from tests.e2e.conftest import log_in
 from tests.e2e.console_page import barriers, painted
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
 from tests.rig import message_factory

@@ -8,7 +8,7 @@ from playwright.sync_api import Locator, Page, Request, expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, choose_theme, command, menu, press, strip
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import ANSWERS, SCREENS, Stage
 
 FLATS, HARBOUR = scenes.INCIDENT, scenes.HARBOUR

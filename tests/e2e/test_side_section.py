@@ -12,7 +12,7 @@ from playwright.sync_api import Locator, Page, expect
 from base_station.views.wire import UnitView
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, menu
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import Stage
 from tests.e2e.tower_scene import member, tower

@@ -13,7 +13,7 @@ from playwright.sync_api import Locator, Page, Request, expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 from tests.e2e.tower_scene import tower
 from tests.rig.pacing import wait_until

@@ -298,7 +298,7 @@ async def test_every_changing_route_is_in_the_audit(
         await do("POST /login", {"username": "administrator", "password": f"{PASSWORD} 2"})
         await do("POST /logout")
     assert set(CHANGING) - actions.done == {
-        # They need a log: test_served_past.py and test_erasure_service.py look for their entries.
+        # They need a log: test_served_closed_incident.py and test_erasure_service.py have them.
         "POST /replays",
         "POST /replays/{replay_id}",
         "DELETE /replays/{replay_id}",

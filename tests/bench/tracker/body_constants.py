@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from edge.tracker.body.config import BodyConfig
-from tests.bench.tracker.elsewhere import left_out_errors, phone_length_ratios, track_back
+from tests.bench.tracker.body_recordings import left_out_errors, phone_length_ratios, track_back
 
 
 def _mean(ratios: list[float]) -> float:

@@ -24,7 +24,7 @@ from edge.tracker.interface import LEFT_FOOT, RIGHT_FOOT, TrackBatch, WornSensor
 from edge.tracker.registry import TRACKERS, make_multi_sensor_tracker
 from edge.tracker.track_rows import join_rows
 from shared.errors import UserError
-from tests.bench.tracker.elsewhere import score_return
+from tests.bench.tracker.body_recordings import score_return
 
 _FILES = {
     LEFT_FOOT: "left_foot.csv.gz",

@@ -21,8 +21,8 @@ from edge.tracker.interface import FOOT
 from edge.tracker.registry import TRACKERS, find_tracker
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
+from tests.bench.tracker.body_recordings import elsewhere_table, measure_elsewhere
 from tests.bench.tracker.cross_validation import cross_validate, left_out_table
-from tests.bench.tracker.elsewhere import elsewhere_table, measure_elsewhere
 from tests.bench.tracker.hard_motions import hard_motions_table, measure_hard_motions
 from tests.bench.tracker.honesty import honesty_table, measure_honesty
 from tests.bench.tracker.perturbed_walks import perturbed_table, score_perturbed
@@ -33,7 +33,7 @@ from tests.bench.tracker.several_sensors import (
     measure_returns,
     returns_table,
 )
-from tests.bench.tracker.simulated_elsewhere import (
+from tests.bench.tracker.simulated_body_sensors import (
     measure_simulated_elsewhere,
     scenarios_table,
     simulated_elsewhere_table,

@@ -11,7 +11,7 @@ from edge.simulation.legs import Walk
 from edge.simulation.scenario import Scenario
 from edge.tracker.interface import FOOT
 from edge.tracker.registry import TRACKERS
-from tests.bench.tracker.simulated_elsewhere import (
+from tests.bench.tracker.simulated_body_sensors import (
     ate_share,
     measure_simulated_elsewhere,
     scenarios_table,

@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, choose_theme, close, menu, strip
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
 
 

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers
-from tests.e2e.looks import flaws
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 
 
