@@ -15,8 +15,8 @@ _MEASURED_OVER_NS = NS_PER_S
 
 
 class DeltaPace:
-    """When the next delta is due, by what the last one cost, and by whether the process has a
-    core's time left.  Times are those of a monotonic clock.
+    """Due times of deltas, by the cost of the last one and by whether the process has a core's
+    time left.  Times are those of a monotonic clock.
     """
 
     def __init__(self, now_ns: int, process_ns: int) -> None:
