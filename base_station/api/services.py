@@ -72,7 +72,7 @@ class Services(LoginServices):
     gate: OperatorGate
     projection: ProjectedTables  # of which ``records`` and ``roster`` read
     replays: Replays
-    forgettings: ErasureQueue | None  # None: a station that only replays
+    erasures: ErasureQueue | None  # None: a station that only replays
     clock: Clock
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log

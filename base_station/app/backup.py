@@ -131,8 +131,8 @@ def _copy_files(
                 done.unreadable.append(path.name)
         passed += size
         on_progress(passed / total)
-    if not source.begun.exists():
-        copy.begun.unlink(missing_ok=True)  # it has names in it
+    if not source.pending_erasures.exists():
+        copy.pending_erasures.unlink(missing_ok=True)  # it has names in it
     _remove_taken_out(copy)
     _remove_old_audio(source, copy)
     here = {path.name for path in segment_paths(source.log)}
@@ -209,7 +209,7 @@ def _copy_file(path: Path, copy: Path) -> bool:
 
 def _files(source: DataFolder) -> Iterator[Path]:
     # Pending erasures go first: an erasure done meanwhile is done in the copy, too.
-    yield from filter(Path.exists, (source.forgettings, source.begun))
+    yield from filter(Path.exists, (source.erasure_jobs, source.pending_erasures))
     yield from segment_paths(source.log)
     yield from ImportFolder(source.imports).files()
     for folder in (PkiFolder(source.path).path, source.path / APART):

@@ -22,7 +22,7 @@ from base_station.privacy.erasure_service import (
     ErasureResult,
     ErasureService,
 )
-from base_station.privacy.requests import hand_over
+from base_station.privacy.requests import request_erasure
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.assessment.wearers import wearers
 from base_station.replay.post_processing import PostProcessor, Tracks
@@ -112,7 +112,7 @@ def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]
     try:
         for by, order in orders_behind(folder.log, place):
             if by == BY_OTHER_STATION:  # a request of the other's that is done: nobody repeats it
-                request_again(folder.forgettings, order.kind, order.subject_id)
+                request_again(folder.erasure_jobs, order.kind, order.subject_id)
         # It must not have events of the cut part, however this ends.
         with open_database(folder.database) as store:
             Records(store, SystemClock()).forget_projections()
@@ -140,21 +140,21 @@ def forget(
         with open_database(folder.require_database()) as store:
             subject = _subject(subject_name, store)
         confirm(subject.description)
-        return hand_over(folder, subject.kind, subject.subject_id, on_progress)
+        return request_erasure(folder, subject.kind, subject.subject_id, on_progress)
     lock = folder.lock()
     try:
         recover_log(folder.log)
         with open_database(folder.database) as store:
             subject = _subject(subject_name, store)
-            forgetter = _forgetter(folder, store)
+            service = _erasure_service(folder, store)
             if subject.kind == "person":
-                forgetter.require_person(subject.subject_id)
+                service.require_person(subject.subject_id)
             confirm(subject.description)
             for unit_id in subject.worn:
                 log_action(folder, store, FORGET_COMMAND, Unassign(unit_id))
             return erase_now(
-                forgetter,
-                folder.forgettings,
+                service,
+                folder.erasure_jobs,
                 FORGET_COMMAND,
                 subject.kind,
                 subject.subject_id,
@@ -164,7 +164,7 @@ def forget(
         lock.close()
 
 
-def _forgetter(folder: DataFolder, store: Database) -> ErasureService:
+def _erasure_service(folder: DataFolder, store: Database) -> ErasureService:
     clock = SystemClock()
     return ErasureService(
         ClosedLog(folder.log),

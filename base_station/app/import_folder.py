@@ -12,7 +12,7 @@ from base_station.app.logged_action import log_action
 from base_station.core.person_references import with_references
 from base_station.importers.bring_in import ImportDesk, require_anchor
 from base_station.importers.interface import ImportOptions
-from base_station.importers.requests import ImportAction, hand_over
+from base_station.importers.requests import ImportAction, request_action
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.database import Database
 from base_station.storage.db.imports import ImportCatalogue
@@ -101,7 +101,7 @@ class FolderImports:
         if self.is_locked:
             log_action(self.folder, self.store, self.by, nameless)
         else:
-            hand_over(self.folder, action)
+            request_action(self.folder, action)
 
     def _line(self, row: ImportRow) -> str:
         name = self._roster.shown(row.file_name)

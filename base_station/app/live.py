@@ -163,7 +163,7 @@ class _Station:
             self._disk.clock,
             self._keeps_audio_since_ns,
         )
-        self._erasures = self._disk.forgetting_desk(
+        self._erasures = self._disk.erasure_queue(
             resources.recordings,
             self._submit_if_leader,
             self._request_checkpoint,

@@ -49,7 +49,7 @@ def new_services(parts: LiveParts) -> Services:
             )
         ),
         archived=ArchivedCopies(disk.store),
-        forgettings=parts.erasures,
+        erasures=parts.erasures,
         clock=disk.clock,
         secure=resources.config.http.certificate is not None,
         ha_status=parts.side.ha_status,

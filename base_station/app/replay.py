@@ -92,7 +92,7 @@ def run_replay_station(
             gate=ReadOnlyGate(),
             projection=FinishedTables(),
             replays=replays,
-            forgettings=None,
+            erasures=None,
             clock=clock,
             secure=config.http.certificate is not None,
             is_replay_only=True,

@@ -141,7 +141,7 @@ def startup_application(
         gate=known,
         projection=FinishedTables(),
         replays=Replays(_no_replay),
-        forgettings=None,
+        erasures=None,
         clock=disk.clock,
         secure=config.http.certificate is not None,
         ha_status=known,

@@ -126,7 +126,7 @@ class StationStorage:
         kept = SmoothedTracks(self.store)
         return PostProcessingProcess(place, self.archive, SMOOTHERS[0], kept, self.clock)
 
-    def forgetting_desk(
+    def erasure_queue(
         self,
         pulls: RecordingTransfers,
         act: Act,
@@ -163,11 +163,11 @@ class StationStorage:
             self.check.note_damaged(path, damage)
             return True
 
-        forgetter = ErasureService(
+        service = ErasureService(
             self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
             mended_first, self.roster.forget, erase_audio,
         )  # fmt: skip
-        return ErasureQueue(forgetter, self.folder.forgettings, obstacle, record_result)
+        return ErasureQueue(service, self.folder.erasure_jobs, obstacle, record_result)
 
 
 def open_storage(

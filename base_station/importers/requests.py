@@ -70,7 +70,7 @@ class ImportRequests:
         self._request.unlink(missing_ok=True)
 
 
-def hand_over(folder: DataFolder, action: ImportAction) -> None:
+def request_action(folder: DataFolder, action: ImportAction) -> None:
     """Have the station that runs on the folder log it.
 
     Raises UserError with the station's reason, or where it does not answer.

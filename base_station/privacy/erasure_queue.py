@@ -1,9 +1,9 @@
-"""Queue of erasures that people asked for: done one after the other, and after a restart too.
+"""Queue of requested erasures: done one after the other, and continued after a restart.
 
-A long log takes minutes to be written anew, so nobody waits for it with an open request: what was
-asked for, and how far it is, is kept in a file beside the log until it is done.  Ended at any
-instant, the whole is done again and ends as it would have (``forgetter``).  What the other one of
-two stations has forgotten is a job like any other, and done here too.
+To rewrite a long log takes minutes, so no request stays open for it: each erasure and its progress
+are kept in a file beside the log until it is done.  Interrupted at any instant, an erasure is done
+again with the same result (``ErasureService``).  An erasure that the other one of two stations has
+done is a job like any other.
 """
 
 from __future__ import annotations
@@ -74,17 +74,17 @@ class ErasureQueue:
 
     def __init__(
         self,
-        forgetter: ErasureService,
-        kept: Path,
+        service: ErasureService,
+        jobs_file: Path,
         obstacle: Obstacle,
         on_done: Callable[[ErasureJob], None],
     ) -> None:
-        """``kept``: the file.  ``on_done`` is called in the desk's thread when something was
-        forgotten.
+        """``jobs_file`` keeps the jobs.  ``on_done`` is called in the queue's thread after an
+        erasure.
         """
-        self._forgetter = forgetter
+        self._service = service
         self._jobs = JobQueue(
-            kept, ErasureJob, "forgetting", self._work_on_first, "erasures are not done"
+            jobs_file, ErasureJob, "forgetting", self._work_on_first, "erasures are not done"
         )
         self._obstacle = obstacle
         self._on_done = on_done
@@ -103,7 +103,7 @@ class ErasureQueue:
 
         Raises StoreError where the disk does not take it.
         """
-        added = self._jobs.add(_wish(by, kind, subject_id, from_peer=from_peer))
+        added = self._jobs.add(_find_or_create(by, kind, subject_id, from_peer=from_peer))
         if from_peer and not added.from_peer:
             self._jobs.note_each(
                 lambda one: one.forgetting_id == added.forgetting_id, from_peer=True
@@ -136,11 +136,16 @@ class ErasureQueue:
 
     def _work(self, job: ErasureJob) -> bool:
         """False where it is to be tried again later."""
-        tally = _tally_of(job)
+        progress = _progress_before(job)
         self._note(job, state=ErasureState.WORKING, problem="", began=True)
         problem = ""
         try:
-            _forget(self._forgetter, job, lambda share: self._go_on(job, share, tally), tally)
+            _erase(
+                self._service,
+                job,
+                lambda share: self._save_progress(job, share, progress),
+                progress,
+            )
         except _ClosedError:
             return False
         except UserError as error:
@@ -152,18 +157,18 @@ class ErasureQueue:
             if str(error) != self._last_obstacle:
                 _log.warning("forgetting waits, and is tried again: %s", error)
                 self._last_obstacle = str(error)
-            self._note(job, problem=f"it is tried again: {error}", **_so_far(tally))
+            self._note(job, problem=f"it is tried again: {error}", **_counts(progress))
             return False
         self._last_obstacle = ""
         self._on_done(msgspec.structs.replace(job))
-        problem = problem or ". ".join((*tally.damaged, *tally.kept))
-        self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_so_far(tally))
+        problem = problem or ". ".join((*progress.damaged, *progress.kept))
+        self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_counts(progress))
         return True
 
-    def _go_on(self, job: ErasureJob, share: float, tally: ErasureProgress) -> None:
+    def _save_progress(self, job: ErasureJob, share: float, progress: ErasureProgress) -> None:
         """Save the progress before more is erased, so that the audit counts all of it."""
-        more = (tally.files, tally.damaged) != (job.files, job.damaged)
-        self._jobs.note(job, save=more, share=share, **_so_far(tally))
+        more = (progress.files, progress.damaged) != (job.files, job.damaged)
+        self._jobs.note(job, save=more, share=share, **_counts(progress))
         if self._jobs.is_closing:
             raise _ClosedError
 
@@ -172,27 +177,27 @@ class ErasureQueue:
 
 
 def erase_now(
-    forgetter: ErasureService,
-    kept: Path,
+    service: ErasureService,
+    jobs_file: Path,
     by: str,
     kind: str,
     subject_id: str,
     on_progress: Progress,
 ) -> ErasureResult:
-    """Without a desk; cut short, one goes on with it that is given the same file.
+    """Erase without a queue; interrupted, a queue or call with the same file continues it.
 
-    Raises UserError where it makes no sense, or a person ends it in the middle.
+    Raises UserError where the subject is unknown, or a person interrupts it.
     """
-    jobs = JobList(kept, ErasureJob)
+    jobs = JobList(jobs_file, ErasureJob)
     began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
     if kind == PERSON and not began:  # only ids are kept: another text may be a name
-        forgetter.require_person(subject_id)
-    added = jobs.add(_wish(by, kind, subject_id, from_peer=False))
+        service.require_person(subject_id)
+    added = jobs.add(_find_or_create(by, kind, subject_id, from_peer=False))
     (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
-    tally = _tally_of(job)
+    progress = _progress_before(job)
     jobs.note(job, save=True, state=ErasureState.WORKING, began=True)
     try:
-        done = _forget(forgetter, job, on_progress, tally)
+        done = _erase(service, job, on_progress, progress)
     except UserError as error:
         jobs.note(job, save=True, state=ErasureState.FAILED, problem=str(error))
         raise
@@ -202,18 +207,18 @@ def erase_now(
             "goes on with the rest"
         ) from ended
     finally:
-        jobs.note(job, save=True, **_so_far(tally))
-    if forgetter.is_of_pair():  # done again by a station that can order it of the other one
+        jobs.note(job, save=True, **_counts(progress))
+    if service.is_of_pair():  # done again by a station that can order it of the other one
         jobs.note(job, save=True, state=ErasureState.WAITING, problem="", share=0.0)
     else:
         jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
     return done
 
 
-def request_again(kept: Path, kind: str, subject_id: str) -> None:
+def request_again(jobs_file: Path, kind: str, subject_id: str) -> None:
     """Request an erasure whose order is in no log any more, in the file of a station's queue."""
-    jobs = JobList(kept, ErasureJob)
-    jobs.add(_wish(BY_OTHER_STATION, kind, subject_id, from_peer=False))
+    jobs = JobList(jobs_file, ErasureJob)
+    jobs.add(_find_or_create(BY_OTHER_STATION, kind, subject_id, from_peer=False))
 
 
 def _problem_of(job: ErasureJob) -> str:
@@ -238,7 +243,7 @@ def _problem_of(job: ErasureJob) -> str:
     )
 
 
-def _wish(
+def _find_or_create(
     by: str, kind: str, subject_id: str, *, from_peer: bool
 ) -> Callable[[list[ErasureJob]], ErasureJob]:
     def among(under_way: list[ErasureJob]) -> ErasureJob:
@@ -250,22 +255,22 @@ def _wish(
     return among
 
 
-def _forget(
-    forgetter: ErasureService, job: ErasureJob, on_progress: Progress, tally: ErasureProgress
+def _erase(
+    service: ErasureService, job: ErasureJob, on_progress: Progress, progress: ErasureProgress
 ) -> ErasureResult:
-    forget = forgetter.person if job.kind == PERSON else forgetter.incident
-    return forget(job.by, job.subject_id, on_progress, tally, from_peer=job.from_peer)
+    erase = service.erase_person if job.kind == PERSON else service.erase_incident
+    return erase(job.by, job.subject_id, on_progress, progress, from_peer=job.from_peer)
 
 
-def _tally_of(job: ErasureJob) -> ErasureProgress:
-    """Tally of the tries before."""
+def _progress_before(job: ErasureJob) -> ErasureProgress:
+    """Counts of the attempts before."""
     return ErasureProgress(job.records, job.files, job.began, job.damaged, job.kept)
 
 
-def _so_far(tally: ErasureProgress) -> dict[str, object]:
+def _counts(progress: ErasureProgress) -> dict[str, object]:
     return {
-        "records": tally.records,
-        "files": tally.files,
-        "damaged": tally.damaged,
-        "kept": tally.kept,
+        "records": progress.records,
+        "files": progress.files,
+        "damaged": progress.damaged,
+        "kept": progress.kept,
     }

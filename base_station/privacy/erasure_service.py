@@ -200,10 +200,10 @@ class ErasureService:
         self._forget_name = forget_name
         self._erase_audio = erase_audio
         folder = DataFolder(log.folder.parent)
-        self._begun = PendingErasure(folder.begun)
+        self._begun = PendingErasure(folder.pending_erasures)
         self._imports = ImportFolder(folder.imports)
 
-    def person(
+    def erase_person(
         self,
         by: str,
         person_id: str,
@@ -221,14 +221,14 @@ class ErasureService:
             raise _unknown(person_id)
         order = self._ordered(by, PERSON, person_id, found, from_peer=from_peer)
         erasure, _ = self._erasure_of_person(person_id, order)
-        return self._forget(by, erasure, order, f"{PERSON} {person_id}", on_progress, tally)
+        return self._erase(by, erasure, order, f"{PERSON} {person_id}", on_progress, tally)
 
     def require_person(self, person_id: str) -> None:
         """UserError where nobody has ever heard of that person."""
         if not self._erasure_of_person(person_id, None)[1]:
             raise _unknown(person_id)
 
-    def incident(
+    def erase_incident(
         self,
         by: str,
         incident_id: str,
@@ -247,7 +247,7 @@ class ErasureService:
         if begun is None:
             self._begun.keep(erasure)
         tally = tally or ErasureProgress()
-        return self._forget(by, erasure, order, f"{INCIDENT} {incident_id}", on_progress, tally)
+        return self._erase(by, erasure, order, f"{INCIDENT} {incident_id}", on_progress, tally)
 
     def is_of_pair(self) -> bool:
         """True where the log is shared with another station, or was."""
@@ -282,7 +282,7 @@ class ErasureService:
         """
         if self._act is None:
             return None
-        self._forget_in_memory(by, found)
+        self._erase_in_memory(by, found)
         acted = self._act(by, BeginErasure(kind, subject_id))
         if acted is None:
             if not from_peer:
@@ -304,7 +304,7 @@ class ErasureService:
         )  # damaged meanwhile: the log to its end
         return next((one for one in orders if one.action_id == done.action_id), unread)
 
-    def _forget(
+    def _erase(
         self,
         by: str,
         erasure: Erasure,
@@ -323,7 +323,7 @@ class ErasureService:
         if erasure.incident_id:
             tally.files += self._imports.remove_all(erasure.incident_id)
         self._checkpoints.clear()  # one that was being written meanwhile
-        self._begun.let_go(erasure.incident_id)
+        self._begun.remove(erasure.incident_id)
         done = ErasureResult(what, tally.records, tally.files, tally.damaged, tally.kept)
         kind = "ForgotPerson" if erasure.person_id else FORGOT_INCIDENT
         self._records.audit(by, kind, str(done))
@@ -341,7 +341,7 @@ class ErasureService:
         if any(one.incident_id not in erased for one in erasure.others):
             tally.kept = (RADIO_KEPT,)
 
-    def _forget_in_memory(self, by: str, erasure: Erasure) -> None:
+    def _erase_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""
         if erasure.person_id:
             self._forget_name(erasure.person_id)

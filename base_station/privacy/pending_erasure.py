@@ -56,7 +56,7 @@ class PendingErasure:
         """On the disk when this returns.  Raises StoreError."""
         self._write([*self._read(), erasure])
 
-    def let_go(self, incident_id: str) -> None:
+    def remove(self, incident_id: str) -> None:
         """Nothing is left that it tells of.  Raises StoreError."""
         begun = self._read()
         left = [one for one in begun if one.incident_id != incident_id]

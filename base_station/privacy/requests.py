@@ -72,7 +72,7 @@ class ErasureRequests:
         self._request.unlink(missing_ok=True)
 
 
-def hand_over(
+def request_erasure(
     folder: DataFolder, kind: str, subject_id: str, on_progress: Progress
 ) -> ErasureResult:
     """Have the station that runs on the folder forget, and wait until it has.
@@ -109,7 +109,7 @@ def _answer_to(asked: ErasureRequest, path: Path) -> ErasureAnswer | None:
 
 def _done(folder: DataFolder, forgetting_id: str, on_progress: Progress) -> ErasureResult:
     while True:
-        jobs = JobList(folder.forgettings, ErasureJob).all()
+        jobs = JobList(folder.erasure_jobs, ErasureJob).all()
         job = next((one for one in jobs if one.forgetting_id == forgetting_id), None)
         if job is not None:
             on_progress(job.share)

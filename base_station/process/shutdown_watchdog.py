@@ -32,23 +32,25 @@ class ShutdownWatchdog:
     def __exit__(self, *_: object) -> None:
         self._is_over.set()
 
-    def begin(self, not_kept: Callable[[], str], let_go: Callable[[], None]) -> None:
+    def begin(self, not_kept: Callable[[], str], end_children: Callable[[], None]) -> None:
         """From any thread, more than once too.
 
         ``not_kept``: records missing on a disk that hangs, as a sentence for a person; empty: it
-        answers.  ``let_go`` ends processes that would outlive this program.
+        answers.  ``end_children`` ends processes that would outlive this program.
         """
         with self._lock:
             if self._has_begun:
                 return
             self._has_begun = True
-        Thread(target=self._watch, args=(not_kept, let_go), name="end-in-time", daemon=True).start()
+        Thread(
+            target=self._watch, args=(not_kept, end_children), name="end-in-time", daemon=True
+        ).start()
 
-    def _watch(self, not_kept: Callable[[], str], let_go: Callable[[], None]) -> None:
+    def _watch(self, not_kept: Callable[[], str], end_children: Callable[[], None]) -> None:
         patience_s = _PATIENCE_S
         while not self._is_over.wait(patience_s):
             patience_s = _LOOK_EVERY_S
             if lack := not_kept():
                 log.critical("ended although the disk does not answer: %s", lack)
-                let_go()
+                end_children()
                 os._exit(EXIT_CODE)

@@ -24,8 +24,9 @@ class DataFolder:
         self.imports = path / "imports"  # files imported into incidents
         self.database = path / "station.sqlite"
         self.tables_behind = path / "tables-behind"  # since when, while a server was away
-        self.forgettings = path / "forgetting.json"  # pending erasures
-        self.begun = path / "forgetting-begun.json"  # people concerned by them, of incidents
+        self.erasure_jobs = path / "forgetting.json"
+        # Erasures of incidents that are under way, with the people whom they concern
+        self.pending_erasures = path / "forgetting-begun.json"
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:

@@ -201,9 +201,9 @@ def test_users_log_in_and_are_locked_out(store: Database, clock: ManualClock) ->
     session = accounts.log_in("ada", "a long password")
     assert session is not None
     _, token = accounts.add_token("ada", "cot", Role.VIEWER, None)
-    ticket = accounts.hand_over(session)
+    ticket = accounts.create_login_ticket(session)
     assert ticket is not None
-    assert accounts.take_over(ticket) is not None
+    assert accounts.redeem_login_ticket(ticket) is not None
     assert accounts.open_sessions() == {"ada": 2}
     assert accounts.of_token(token) is not None
     with pytest.raises(UserError, match="only administrator"):

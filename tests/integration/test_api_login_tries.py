@@ -158,7 +158,7 @@ async def test_login_transfers_are_limited_separately(
     async with station.client() as client:
         client.headers["origin"] = ORIGIN
         for _ in range(70):
-            ticket = {"ticket": accounts.hand_over(session)}
+            ticket = {"ticket": accounts.create_login_ticket(session)}
             assert (await client.post("/login/hand-over", json=ticket)).status_code == 200
             client.cookies.clear()
         wrong = {"ticket": "guess"}

@@ -254,9 +254,9 @@ async def test_a_login_lasts_half_a_day_and_a_ticket_ten_minutes(
     late, in_time = [(await browser.post("/hand-over")).json() for _ in range(2)]
     assert late["lasts_s"] == 600
     clock.advance(599.0)
-    assert accounts.take_over(in_time["ticket"]) is not None
+    assert accounts.redeem_login_ticket(in_time["ticket"]) is not None
     clock.advance(1.0)
-    assert accounts.take_over(late["ticket"]) is None
+    assert accounts.redeem_login_ticket(late["ticket"]) is None
     clock.advance(43_199.0 - 600.0)
     assert (await browser.get("/me")).status_code == 200
     clock.advance(1.0)

@@ -10,7 +10,7 @@ from typing import Any, cast
 import msgspec
 import pytest
 
-from base_station.privacy import erasure_service as forgetter_module
+from base_station.privacy import erasure_service
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.privacy.erasure_service import ErasureProgress
 from base_station.storage.data_folder import DataFolder
@@ -26,7 +26,7 @@ from shared.mcap_log import (
     rewrite_segment,
     segment_paths,
 )
-from tests.rig.erasure_folders import fails, forgetter_of, split_log
+from tests.rig.erasure_folders import erasure_service_of, fails, split_log
 from tests.rig.erasure_scenario import ANA, BO, ErasureScenario, names_in, stored_in
 
 
@@ -43,7 +43,7 @@ def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None
     cuts = 0
     with Store(data.database) as store:
         records = Records(store, SystemClock())
-        forgetter = forgetter_of(data, store, records)
+        service = erasure_service_of(data, store, records)
 
         def forget_until(progress: int) -> None:
             reported = iter(range(progress))
@@ -52,7 +52,7 @@ def test_interrupted_and_repeated_erasure_leaves_no_byte(tmp_path: Path) -> None
                 if next(reported, None) is None:
                     raise PowerCut
 
-            forgetter.person("ada", "p-77", go_on)
+            service.erase_person("ada", "p-77", go_on)
 
         for progress in range(10):
             try:
@@ -71,14 +71,14 @@ def forgotten_in_tries(folder: Path, kind: str, subject_id: str, cut_at: Collect
     data = DataFolder(folder)
     with Store(data.database) as store:
         records = Records(store, SystemClock())
-        forgetter = forgetter_of(data, store, records)
-        desk = ErasureQueue(forgetter, data.forgettings, lambda _: "", lambda _: None)
+        service = erasure_service_of(data, store, records)
+        desk = ErasureQueue(service, data.erasure_jobs, lambda _: "", lambda _: None)
         desk.add("ada", kind, subject_id)
         for step in cut_at:
             with pytest.MonkeyPatch.context() as patched:
                 patched.setattr(*BROKEN[step](store, records))
                 assert desk._work_on_first(desk._jobs.under_way()) > 0.0, "it is tried again"
-            desk = ErasureQueue(forgetter, data.forgettings, lambda _: "", lambda _: None)
+            desk = ErasureQueue(service, data.erasure_jobs, lambda _: "", lambda _: None)
         assert desk._work_on_first(desk._jobs.under_way()) == 0.0
         (stated,) = [one for one in records.audit_entries(EVER) if one.action.startswith("Forgot")]
         return stated.detail
@@ -95,8 +95,8 @@ def _third_segment() -> Callable[..., int]:
 
 
 BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
-    "log": lambda _store, _records: (forgetter_module, "rewrite_segment", _third_segment()),
-    "store": lambda _store, _records: (forgetter_module, "forget_in", fails),
+    "log": lambda _store, _records: (erasure_service, "rewrite_segment", _third_segment()),
+    "store": lambda _store, _records: (erasure_service, "forget_in", fails),
     "compact": lambda store, _records: (store, "compact", fails),
     "audit": lambda _store, records: (records, "audit", fails),
 }
@@ -130,15 +130,15 @@ def test_members_of_an_unfinished_erasure_are_kept_until_its_end(
     folder = shutil.copytree(reported, tmp_path / "station")
     data = DataFolder(folder)
     with Store(data.database) as store, pytest.MonkeyPatch.context() as patched:
-        forgetter = forgetter_of(data, store, Records(store, SystemClock()))
-        patched.setattr(forgetter_module, "forget_in", fails)
+        service = erasure_service_of(data, store, Records(store, SystemClock()))
+        patched.setattr(erasure_service, "forget_in", fails)
         with pytest.raises(StoreError, match="full"):
-            forgetter.incident("ada", "i1")
+            service.erase_incident("ada", "i1")
         assert begun_in(folder).stat().st_mode & 0o077 == 0
         assert ANA in begun_in(folder).read_text(encoding="utf-8")
         begun_in(folder).write_text("[", encoding="utf-8")
         with pytest.raises(StoreError, match="cannot be read"):
-            forgetter.incident("ada", "i1")
+            service.erase_incident("ada", "i1")
 
 
 @pytest.mark.parametrize("cut_at", [[], ["log"], ["audit"]])
@@ -159,7 +159,7 @@ def test_unreadable_parts_of_the_log_are_reported(
     first, last = (detail.partition(path.name)[2].split(". ")[0] for path in (paths[1], paths[-1]))
     assert first.endswith("its unreadable part is gone")
     assert last.endswith("it stays, with all people in it")
-    wishes = msgspec.json.decode(DataFolder(folder).forgettings.read_bytes())
+    wishes = msgspec.json.decode(DataFolder(folder).erasure_jobs.read_bytes())
     assert paths[1].name in wishes[-1]["problem"]
     damage: list[str] = []
     list(read_log(DataFolder(folder).log, on_damage=damage.append))
@@ -170,14 +170,14 @@ def test_erasure_of_a_removed_person_without_units_is_in_the_audit(tmp_path: Pat
     (tmp_path / "log").mkdir()
     with Store(tmp_path / "station.sqlite") as store:
         records = Records(store, SystemClock())
-        forgetter = forgetter_of(DataFolder(tmp_path), store, records)
+        service = erasure_service_of(DataFolder(tmp_path), store, records)
         person_id = Roster(store, SystemClock()).add_person(ANA, "", "").person_id
         with pytest.MonkeyPatch.context() as patched:
             patched.setattr(records, "audit", fails)
             with pytest.raises(StoreError):
-                forgetter.person("ada", person_id)
+                service.erase_person("ada", person_id)
         with pytest.raises(UserError, match="knows a person"):
-            forgetter.person("ada", person_id)
-        forgetter.person("ada", person_id, tally=ErasureProgress(again=True))
+            service.erase_person("ada", person_id)
+        service.erase_person("ada", person_id, tally=ErasureProgress(again=True))
         (entry,) = records.audit_entries(EVER)
     assert entry.detail == f"person {person_id}: 0 records of the log in 0 files"

@@ -50,7 +50,7 @@ from shared.messages.station import (
     SetPlan,
     SetStart,
 )
-from tests.rig.erasure_folders import forgetter_of, split_log
+from tests.rig.erasure_folders import erasure_service_of, split_log
 from tests.rig.erasure_scenario import put_person, stored_in
 from tests.rig.reported_incident import plan, write_log
 from tests.rig.station_script import Record, Script, new_pipeline
@@ -311,7 +311,7 @@ def test_interrupted_and_repeated_erasure_gives_the_same_log(
     data = DataFolder(make_folder(tmp_path / "tries", erased.scene))
     cuts = 0
     with Store(data.database) as store:
-        forgetter = forgetter_of(data, store, Records(store, SystemClock()))
+        service = erasure_service_of(data, store, Records(store, SystemClock()))
         for after in range(20):
             steps = iter(range(after))
 
@@ -320,13 +320,15 @@ def test_interrupted_and_repeated_erasure_gives_the_same_log(
                     raise _PowerCut
 
             try:
-                forgetter.incident("ada", LANE, go_on)
+                service.erase_incident("ada", LANE, go_on)
                 break
             except _PowerCut:
                 cuts += 1
-                assert data.begun.exists(), "a log of which a part is rewritten does not say it"
+                assert data.pending_erasures.exists(), (
+                    "a log of which a part is rewritten does not say it"
+                )
     assert cuts > 4
-    assert not data.begun.exists()
+    assert not data.pending_erasures.exists()
     assert list(read_log(data.log)) == erased.records()
 
 
@@ -346,4 +348,4 @@ def test_repeated_erasure_changes_nothing_and_the_other_incident_can_be_erased(
     station_app.rebuild(folder, lambda _: None)
     for incident_id in (LANE, HARBOUR):
         assert kept_of(folder, incident_id)["worn"] == []
-    assert DataFolder(folder).begun.exists() is False
+    assert DataFolder(folder).pending_erasures.exists() is False

@@ -13,7 +13,7 @@ import pytest
 
 from base_station.app.station_storage import open_storage
 from base_station.engine.ports import ActionResult
-from base_station.privacy import erasure_service as forgetter_module
+from base_station.privacy import erasure_service
 from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -49,7 +49,7 @@ def test_erasure_runs_on_a_running_station(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station, ExitStack() as closing:
         store = closing.enter_context(Store(folder.database))
         records = Records(store, SystemClock())
-        forgetter = ErasureService(
+        service = ErasureService(
             station.recorder, store, station.checkpoints, records, SystemClock(), NoPulls(),
             station.drive.submit,
         )  # fmt: skip
@@ -64,7 +64,7 @@ def test_erasure_runs_on_a_running_station(tmp_path: Path) -> None:
         station.act(RegisterUnit("FF-02", "FF-02"))
         station.act(Assign("FF-02", "p-bo", BO, "", ""))
         Walker(station, "FF-02").press_mayday()
-        forgetter.person("admin", "p-77")
+        service.erase_person("admin", "p-77")
         unit = station.pipeline.state.units["FF-01"]
         assert unit.trails.shown == []
         assert unit.place.fused is None
@@ -97,7 +97,7 @@ def test_requested_erasure_waits_for_the_end_of_a_new_incident(tmp_path: Path) -
                     closed_by="",
                 )
             )  # fmt: skip
-        desk = disk.forgetting_desk(
+        desk = disk.erasure_queue(
             NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True,
             lambda: False, lambda *_: 0,
         )  # fmt: skip
@@ -124,7 +124,7 @@ def test_damaged_segment_is_repaired_from_the_other_station_before_erasure(
         recorder = Recorder(folder.path, clock)
         closing.callback(recorder.close)
         disk = open_storage(folder, recorder, clock, lambda _: None, closing, alone=False)
-        desk = disk.forgetting_desk(
+        desk = disk.erasure_queue(
             NoPulls(), acting_in(recorder), lambda: None, lambda: True, lambda: True, lambda *_: 0
         )
         with desk:
@@ -159,14 +159,14 @@ def test_checkpoints_are_removed_after_the_erasure_in_memory(
         ErasureService(
             ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()), SystemClock(),
             NoPulls(), lambda _by, _action: RecordingActions(),
-        ).incident("ada", "i1")  # fmt: skip
+        ).erase_incident("ada", "i1")  # fmt: skip
         assert happened == ["acted", "acted", "acted", "cleared", "cleared"]
-        monkeypatch.setattr(forgetter_module, "_ACTED_WITHIN_S", 0.0)
+        monkeypatch.setattr(erasure_service, "_ACTED_WITHIN_S", 0.0)
         with pytest.raises(StoreError, match="did not get to"):
             ErasureService(
                 ClosedLog(data.log), store, checkpoints, Records(store, SystemClock()),
                 SystemClock(), NoPulls(), lambda _by, _action: Future(),
-            ).person("ada", "p-77")  # fmt: skip
+            ).erase_person("ada", "p-77")  # fmt: skip
 
 
 def test_transfer_of_an_erased_recording_is_ended(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_transfer_of_an_erased_recording_is_ended(tmp_path: Path) -> None:
             ErasureService(
                 station.recorder, store, station.checkpoints, Records(store, SystemClock()),
                 SystemClock(), pulls,
-            ).person("ada", "p-77")  # fmt: skip
+            ).erase_person("ada", "p-77")  # fmt: skip
         assert not (folder.recordings / "FF-01").exists()
         until(lambda: not pulls._running)
         assert not (folder.recordings / "FF-01").exists()

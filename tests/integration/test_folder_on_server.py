@@ -161,7 +161,7 @@ def test_erasure_waits_for_the_projection_of_the_log(moved: Path, address: Serve
         data = DataFolder(moved)
         disk = open_storage(data, recorder, clock, pytest.fail, closing, address)
         recordings = TransferQueue(lambda *_: None, data.recordings, clock)
-        queue = disk.forgetting_desk(
+        queue = disk.erasure_queue(
             recordings, lambda *_: None, lambda: None, lambda: True, lambda: False, lambda *_: 0
         )
         job = ErasureJob("1", "chief", "person", "p-77")

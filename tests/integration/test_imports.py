@@ -267,7 +267,7 @@ def test_running_station_logs_the_import_of_a_command(
     done: list[ImportAction] = []
     answering = ImportRequests(folder, done.append)
     removal = RemoveImport("i1", "a")
-    waiting = threading.Thread(target=requests.hand_over, args=(folder, removal))
+    waiting = threading.Thread(target=requests.request_action, args=(folder, removal))
     waiting.start()
     answer(answering, waiting)
     assert done == [removal]
@@ -279,7 +279,7 @@ def test_running_station_logs_the_import_of_a_command(
 
     def ask() -> None:
         with pytest.raises(UserError) as refused:
-            requests.hand_over(folder, removal)
+            requests.request_action(folder, removal)
         refusals.append(str(refused.value))
 
     refusing = ImportRequests(folder, refuse)
@@ -292,4 +292,4 @@ def test_running_station_logs_the_import_of_a_command(
     assert not list(tmp_path.iterdir())
     monkeypatch.setattr(requests, "ANSWERED_WITHIN_S", 0.0)
     with pytest.raises(UserError, match="does not answer"):
-        requests.hand_over(folder, removal)
+        requests.request_action(folder, removal)

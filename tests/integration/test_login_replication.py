@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S
+from base_station.storage.db.accounts import LOGIN_TICKET_S, SESSION_S
 from base_station.storage.db.store import Store
 from tests.rig.table_side import PASSWORD, TableSide
 
@@ -68,7 +68,7 @@ def test_revoked_access_is_revoked_at_both_stations(
     standby.copy(active)
     here = standby.accounts.log_in("ada", PASSWORD)  # by whoever has found the password
     assert here is not None
-    ticket = standby.accounts.hand_over(here)
+    ticket = standby.accounts.create_login_ticket(here)
     assert ticket is not None
     match how:
         case "new password":
@@ -79,7 +79,7 @@ def test_revoked_access_is_revoked_at_both_stations(
             active.accounts.remove_user("ada")
     standby.copy(active)
     assert standby.accounts.of_session(here) is None
-    assert standby.accounts.take_over(ticket) is None
+    assert standby.accounts.redeem_login_ticket(ticket) is None
     assert standby.accounts.open_sessions() == {}
 
 
@@ -177,15 +177,15 @@ def test_used_ticket_stays_used(sides: tuple[TableSide, TableSide]) -> None:
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
     assert there is not None
-    ticket = active.accounts.hand_over(there)
+    ticket = active.accounts.create_login_ticket(there)
     assert ticket is not None
     standby.copy(active)
-    assert standby.accounts.take_over(ticket) is not None
-    active.accounts.hand_over(there)  # so that all is copied again
+    assert standby.accounts.redeem_login_ticket(ticket) is not None
+    active.accounts.create_login_ticket(there)  # so that all is copied again
     standby.copy(active)
-    assert standby.accounts.take_over(ticket) is None
+    assert standby.accounts.redeem_login_ticket(ticket) is None
     assert active.tables.take_away(standby.tables.read())
-    assert active.accounts.take_over(ticket) is None
+    assert active.accounts.redeem_login_ticket(ticket) is None
 
 
 def test_login_ended_while_the_other_was_off_ends_there(
@@ -217,21 +217,21 @@ def test_login_is_transferred_to_the_other_station_once(sides: tuple[TableSide, 
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
     assert there is not None
-    ticket = active.accounts.hand_over(there)
+    ticket = active.accounts.create_login_ticket(there)
     assert ticket is not None
-    assert standby.accounts.take_over(ticket) is None  # it has not heard of it
+    assert standby.accounts.redeem_login_ticket(ticket) is None  # it has not heard of it
     standby.copy(active)
-    here = standby.accounts.take_over(ticket)
+    here = standby.accounts.redeem_login_ticket(ticket)
     assert here is not None
     assert here != there
     assert standby.accounts.of_session(here) == active.accounts.of_session(there)
-    assert standby.accounts.take_over(ticket) is None
+    assert standby.accounts.redeem_login_ticket(ticket) is None
     standby.copy(active)  # still has the ticket, which was never shown there
-    assert active.accounts.hand_over("no session") is None
-    last = active.accounts.hand_over(there)
+    assert active.accounts.create_login_ticket("no session") is None
+    last = active.accounts.create_login_ticket(there)
     assert last is not None
     active.accounts.log_out(there)
-    assert active.accounts.take_over(last) is None
+    assert active.accounts.redeem_login_ticket(last) is None
 
 
 def test_ticket_and_its_session_expire(sides: tuple[TableSide, TableSide]) -> None:
@@ -239,13 +239,17 @@ def test_ticket_and_its_session_expire(sides: tuple[TableSide, TableSide]) -> No
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     session = active.accounts.log_in("ada", PASSWORD)
     assert session is not None
-    late, soon = active.accounts.hand_over(session), active.accounts.hand_over(session)
+    late, soon = (
+        active.accounts.create_login_ticket(session),
+        active.accounts.create_login_ticket(session),
+    )
     assert late is not None
     assert soon is not None
-    active.clock.advance(HAND_OVER_S - 1.0)
-    went_on = active.accounts.take_over(soon)
+    active.clock.advance(LOGIN_TICKET_S - 1.0)
+    went_on = active.accounts.redeem_login_ticket(soon)
     assert went_on is not None
     active.clock.advance(1.0)
-    assert active.accounts.take_over(late) is None
-    active.clock.advance(SESSION_S - HAND_OVER_S)  # since the login, however often it was handed on
+    assert active.accounts.redeem_login_ticket(late) is None
+    # A session ends by the time of its login, however often it was continued by a ticket.
+    active.clock.advance(SESSION_S - LOGIN_TICKET_S)
     assert active.accounts.of_session(went_on) is None

@@ -113,7 +113,7 @@ class ErasingStation:
 
         by = "ada" if self.leads else BY_OTHER_STATION
         try:
-            self._service.person(by, person_id, progress, from_peer=not self.leads)
+            self._service.erase_person(by, person_id, progress, from_peer=not self.leads)
         except KilledError:
             self.restart()
 

@@ -35,7 +35,7 @@ class NoPulls:
         pass
 
 
-def forgetter_of(data: DataFolder, store: Store, records: Records) -> ErasureService:
+def erasure_service_of(data: DataFolder, store: Store, records: Records) -> ErasureService:
     """Erasure service of a stopped station."""
     log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
     return ErasureService(log, store, checkpoints, records, SystemClock(), NoPulls())

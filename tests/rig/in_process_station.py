@@ -190,7 +190,7 @@ class InProcessStation:
         self.router = MemoryRouter()
         roster = Roster(self.store, clock)
         self.drive = SteppedEngine(clock, self.projection, roster, self.hub)
-        forgetter = ErasureService(
+        service = ErasureService(
             ClosedLog(folder / "log"),
             self.store,
             Checkpoints(folder / "checkpoints"),
@@ -199,10 +199,10 @@ class InProcessStation:
             TransferQueue(query_without_answer, folder / "recordings", clock),
             self.drive.submit,
         )
-        self.forgettings = ErasureQueue(
-            forgetter, folder / "forgetting.json", lambda _: "", lambda _: None
+        self.erasures = ErasureQueue(
+            service, folder / "forgetting.json", lambda _: "", lambda _: None
         )
-        self.forgettings.__enter__()
+        self.erasures.__enter__()
         self.services = Services(
             accounts=Accounts(self.store, clock, QUICK_HASH),
             roster=roster,
@@ -212,7 +212,7 @@ class InProcessStation:
             gate=self.drive,
             projection=self.projection,
             replays=Replays(no_replays),
-            forgettings=self.forgettings,
+            erasures=self.erasures,
             clock=clock,
             secure=False,
             alerts=AlertIntake(self.drive.note_external),
@@ -239,7 +239,7 @@ class InProcessStation:
         return httpx.AsyncClient(transport=transport, base_url=f"{ORIGIN}/api/v1", headers=headers)
 
     def close(self) -> None:
-        self.forgettings.__exit__()
+        self.erasures.__exit__()
         self.projection.close()
         self.store.close()
 

@@ -45,7 +45,7 @@ class Progress(BaseModel):
 @router.get("/forgettings")
 def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
     """Those under way and the last that are over."""
-    return [] if station.forgettings is None else list(map(_progress, station.forgettings.all()))
+    return [] if station.erasures is None else list(map(_progress, station.erasures.all()))
 
 
 @router.post("/people/{person_id}/forget", status_code=202)
@@ -123,7 +123,7 @@ def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJo
 
 
 def _desk(station: Services) -> ErasureQueue:
-    if station.forgettings is None:
+    if station.erasures is None:
         raise Problem(409, ONLY_REPLAYS)
     incident = station.picture().incident
     if incident is not None and incident.closed_ms is None:
@@ -145,7 +145,7 @@ def _desk(station: Services) -> ErasureQueue:
             ),
         )
     station.projection.flush()  # pending records would be stored afterwards
-    return station.forgettings
+    return station.erasures
 
 
 def _is_under_way(command: CommandView) -> bool:

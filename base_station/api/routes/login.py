@@ -1,4 +1,4 @@
-"""Login, logout, the present user, and continuation at the other station."""
+"""Login, logout, the present user, and login by a ticket of the other station."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from base_station.api.forms import Form, Name
 from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
 from base_station.api.services import Logins, LoginServices
-from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S
+from base_station.storage.db.accounts import LOGIN_TICKET_S, SESSION_S
 from shared.coded_text import coded
 
 router = APIRouter(tags=["login"])
@@ -41,7 +41,7 @@ def _me(principal: Principal, station: LoginServices) -> Me:
 
 
 class Ticket(BaseModel):
-    """For the other station's console; its holder goes on there as the user who requested it."""
+    """For the other station's console; its holder is logged in there as the user who requested it."""
 
     ticket: str
     lasts_s: int
@@ -87,13 +87,13 @@ def _log_in(
 
 
 @router.post("/login/hand-over")
-def go_on(
+def log_in_with_ticket(
     shown: ShownTicket, request: Request, response: Response, station: Logins, throttle: Throttle
 ) -> Me:
     """Log in with a ticket of the other station, once."""
     address = request.client.host if request.client else ""
     throttle.check_network(address)
-    secret = station.accounts.take_over(shown.ticket)
+    secret = station.accounts.redeem_login_ticket(shown.ticket)
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
         throttle.record_refusal(address)
@@ -124,9 +124,9 @@ def log_out(request: Request, response: Response, station: Logins) -> None:
 
 
 @router.post("/hand-over")
-def hand_over(request: Request, station: Logins, _: Viewer) -> Ticket:
+def create_login_ticket(request: Request, station: Logins, _: Viewer) -> Ticket:
     """Consoles ask now and then, so that users need not log in again when this station dies."""
-    ticket = station.accounts.hand_over(request.cookies.get(COOKIE, ""))
+    ticket = station.accounts.create_login_ticket(request.cookies.get(COOKIE, ""))
     if ticket is None:
         raise Problem(
             403,
@@ -135,7 +135,7 @@ def hand_over(request: Request, station: Logins, _: Viewer) -> Ticket:
                 "A ticket is for who has logged in with a browser; a token holds there.",
             ),
         )
-    return Ticket(ticket=ticket, lasts_s=HAND_OVER_S)
+    return Ticket(ticket=ticket, lasts_s=LOGIN_TICKET_S)
 
 
 @router.get("/me")

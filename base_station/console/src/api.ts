@@ -76,8 +76,8 @@ export const SCOPES = [
 export const login = (username: string, password: string) =>
   call<Me>("POST", "/login", { username, password });
 /** Log in with a ticket of the other station's console. */
-export const goOn = (ticket: string) => call<Me>("POST", "/login/hand-over", { ticket });
-export const handOver = () => call<{ ticket: string }>("POST", "/hand-over");
+export const loginWithTicket = (ticket: string) => call<Me>("POST", "/login/hand-over", { ticket });
+export const createLoginTicket = () => call<{ ticket: string }>("POST", "/hand-over");
 export const logout = () => call<void>("POST", "/logout");
 export const me = () => call<Me>("GET", "/me");
 

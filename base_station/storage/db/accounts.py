@@ -37,7 +37,7 @@ from shared.coded_text import coded
 from shared.errors import UserError
 
 SESSION_S = 12 * 3600
-HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
+LOGIN_TICKET_S = 600  # from being made until the other station leads and the browser has gone there
 GENERATED_NS = -1  # as the time of a password that the program made: any other one is later
 MOST_TOKENS = 100  # of one user: the other station copies all of them
 
@@ -199,11 +199,11 @@ class Accounts:
             LoginSession.expires_ns > self._clock.utc_ns(),
         )
 
-    # ---- going on at the other station
+    # ---- login at the other station, by ticket
 
-    def hand_over(self, secret: str) -> str | None:
-        """A ticket with which its holder goes on at the other station as whom this session is
-        for, within ``HAND_OVER_S``; None where there is no such session.
+    def create_login_ticket(self, secret: str) -> str | None:
+        """A ticket that logs its holder in at the other station as the user of this session,
+        within ``LOGIN_TICKET_S``; None where there is no such session.
         """
         if self.of_session(secret) is None:
             return None
@@ -216,12 +216,12 @@ class Accounts:
                 LoginTransferTicket(
                     ticket_hash=sha256(ticket),
                     session_hash=sha256(secret),
-                    expires_ns=now_ns + HAND_OVER_S * NS_PER_S,
+                    expires_ns=now_ns + LOGIN_TICKET_S * NS_PER_S,
                 )
             )
         return ticket
 
-    def take_over(self, ticket: str) -> str | None:
+    def redeem_login_ticket(self, ticket: str) -> str | None:
         """The secret of a new session, which ends when the one before it would have; None where
         the ticket is of no use (any more).
         """

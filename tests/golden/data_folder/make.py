@@ -118,7 +118,7 @@ def write(data: DataFolder) -> None:
         accounts.add_token("chief", "wall", Role.VIEWER, None, ())
         secret = accounts.log_in("chief", "a long password 17")
         assert secret is not None
-        accounts.hand_over(secret)
+        accounts.create_login_ticket(secret)
         Records(store, clock).audit("chief", "Login", "")
         store.compact()
 

@@ -31,7 +31,7 @@ export function wayOut({ link, standby, led, nowMs }: Standing): string | null {
 export function watchOver(session: Session, go: (url: string) => void): () => void {
   let led = false;
   let asking = false;
-  const tickets = new Tickets(api.handOver);
+  const tickets = new Tickets(api.createLoginTicket);
   const look = async () => {
     const { link, health } = session.picture;
     const standby = health.peek()?.standby ?? null;

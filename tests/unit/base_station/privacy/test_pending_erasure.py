@@ -31,7 +31,7 @@ def test_saved_erasure_is_restored(tmp_path: Path) -> None:
     pending.keep(erasure)
     assert pending.of("i1") == erasure
     assert pending.of("i2") is None
-    pending.let_go("i1")
+    pending.remove("i1")
     assert pending.of("i1") is None
     assert not (tmp_path / "begun.json").exists()
 
