@@ -15,13 +15,10 @@ from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.core.log_position import LogPosition
 from base_station.engine.log_feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
+from base_station.privacy.erasure_progress import ErasureResult
 from base_station.privacy.erasure_queue import erase_now, request_again
-from base_station.privacy.erasure_service import (
-    BY_OTHER_STATION,
-    ClosedLog,
-    ErasureResult,
-    ErasureService,
-)
+from base_station.privacy.erasure_service import BY_OTHER_STATION, ErasureService
+from base_station.privacy.log_files import ClosedLog
 from base_station.privacy.requests import request_erasure
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.assessment.wearers import wearers

@@ -16,14 +16,8 @@ from pathlib import Path
 
 import msgspec
 
-from base_station.privacy.erasure_service import (
-    BY_OTHER_STATION,
-    PERSON,
-    ErasureProgress,
-    ErasureResult,
-    ErasureService,
-    Progress,
-)
+from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
+from base_station.privacy.erasure_service import BY_OTHER_STATION, PERSON, ErasureService
 from base_station.storage.job_queue import JobList, JobQueue
 from shared.coded_text import Term, coded
 from shared.errors import MusterError, UserError

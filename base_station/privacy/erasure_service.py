@@ -10,33 +10,28 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection
 from concurrent.futures import Future
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from threading import Lock
 from typing import Protocol
 
 from base_station.core.erasure.erasure import (
-    CaptureClocks,
     Erasure,
-    Record,
     actions_of,
     erasure_of_person,
 )
 from base_station.core.erasure.erasure_order import (
     ErasureOrder,
-    OrderedPart,
     actions_before,
     last_order,
     orders_of,
 )
 from base_station.core.erasure.incident_scan import erasure_of_incident
 from base_station.core.erasure.names_in_older_logs import has_names
-from base_station.core.erasure.redaction import Redactor
 from base_station.engine.ports import ActionResult
+from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
+from base_station.privacy.log_files import LogFiles, LogReading
+from base_station.privacy.log_rewriter import LogRewriter, RepairFirst
 from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -50,27 +45,13 @@ from base_station.storage.db.erasure import (
 )
 from base_station.storage.db.records import Records
 from base_station.storage.imports import ImportFolder
-from base_station.storage.segment_index import segment_row
-from shared.channels import CHANNELS, OPERATOR, Direction, tracker_id
 from shared.clock import Clock
 from shared.coded_text import coded
 from shared.errors import StoreError, UserError
-from shared.mcap_log import (
-    SegmentReader,
-    missing_segments,
-    read_log,
-    remove_torn,
-    rewrite_segment,
-    segment_number,
-    segment_paths,
-)
-from shared.messages import STATION_ID
 from shared.messages.station import (
     Action,
     BeginErasure,
     ForgetWearers,
-    OpenIncident,
-    RegisterUnit,
     TakeOver,
 )
 
@@ -81,35 +62,10 @@ RADIO_KEPT = (
     "too: nobody can tell who of them speaks"
 )
 PERSON = "person"
-_ACTIONS = OPERATOR.key(STATION_ID)
 _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
-Progress = Callable[[float], None]  # receives the fraction done
-RepairFirst = Callable[[Path, str], bool]  # receives the damage in a segment of the log
 EraseAudio = Callable[[int, int], int]  # station times, the second left out; gives packets
 Act = Callable[[str, Action], Future[ActionResult] | None]  # None: this station does not lead
-
-
-class LogFiles(Protocol):
-    """The log as files; a station that runs goes on in a new one."""
-
-    @property
-    def folder(self) -> Path:
-        """Folder of the segments."""
-        ...
-
-    @property
-    def rewriting(self) -> AbstractContextManager[object]:
-        """Entered while complete segments are exchanged."""
-        ...
-
-    def complete_segments(self) -> Collection[Path]:
-        """In order; none of them is written to from now on, and none is missing."""
-        ...
-
-    def note_rewritten(self, path: Path) -> None:
-        """This segment has another content now."""
-        ...
 
 
 class RecordingTransfers(Protocol):
@@ -118,53 +74,6 @@ class RecordingTransfers(Protocol):
     def forget(self, unit_ids: Collection[str]) -> None:
         """None of these units is asked for more."""
         ...
-
-
-@dataclass(slots=True)
-class ErasureProgress:
-    """Counts of what was erased so far, with those of attempts that were cut short."""
-
-    records: int = 0  # of the log that changed or went
-    files: int = 0  # that were written anew or removed
-    again: bool = False  # an attempt was made before
-    damaged: tuple[str, ...] = ()  # parts of the log, and their results
-    kept: tuple[str, ...] = ()  # records that stay, as sentences
-
-    def note_damage(self, part: str, written_anew: bool) -> None:
-        gone, stays = "its unreadable part is gone", "it stays, with all people in it"
-        damage = f"Damaged: {part}; {gone if written_anew else stays}"
-        if damage not in self.damaged:
-            _log.warning("%s", damage)
-            self.damaged = (*self.damaged, damage)
-
-
-@dataclass(frozen=True, slots=True)
-class ErasureResult:
-    """Result of an erasure over all attempts."""
-
-    what: str  # "person 1f.." or "incident 20..", for the audit
-    records: int
-    files: int
-    damaged: tuple[str, ...] = ()
-    kept: tuple[str, ...] = ()
-
-    def __str__(self) -> str:
-        done = f"{self.what}: {self.records} records of the log in {self.files} files"
-        return ". ".join((done, *self.damaged, *self.kept))
-
-
-class ClosedLog:
-    """The log of a folder that no station runs on."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.rewriting = Lock()
-
-    def complete_segments(self) -> Collection[Path]:
-        return segment_paths(self.folder)
-
-    def note_rewritten(self, path: Path) -> None:
-        """Nobody remembers what was in it."""
 
 
 class ErasureService:
@@ -190,13 +99,14 @@ class ErasureService:
         incident alone: in what is spoken nobody can tell who speaks.
         """
         self._log = log
+        self._reading = LogReading(log)
+        self._rewriter = LogRewriter(log, records, mended_first)
         self._store = store
         self._checkpoints = checkpoints
         self._records = records
         self._clock = clock
         self._pulls = pulls
         self._act = act
-        self._mended_first = mended_first
         self._forget_name = forget_name
         self._erase_audio = erase_audio
         folder = DataFolder(log.folder.parent)
@@ -208,20 +118,20 @@ class ErasureService:
         by: str,
         person_id: str,
         on_progress: Progress = lambda _: None,
-        tally: ErasureProgress | None = None,
+        progress: ErasureProgress | None = None,
         *,
         from_peer: bool = False,
     ) -> ErasureResult:
         """``from_peer``: the other station has erased it.  UserError where nobody has ever heard of
         that person; tried again, everything may be gone but for the entry in the audit.
         """
-        tally = tally or ErasureProgress()
+        progress = progress or ErasureProgress()
         found, is_known = self._erasure_of_person(person_id, None)
-        if not (tally.again or is_known):
+        if not (progress.again or is_known):
             raise _unknown(person_id)
         order = self._ordered(by, PERSON, person_id, found, from_peer=from_peer)
         erasure, _ = self._erasure_of_person(person_id, order)
-        return self._erase(by, erasure, order, f"{PERSON} {person_id}", on_progress, tally)
+        return self._erase(by, erasure, order, f"{PERSON} {person_id}", on_progress, progress)
 
     def require_person(self, person_id: str) -> None:
         """UserError where nobody has ever heard of that person."""
@@ -233,7 +143,7 @@ class ErasureService:
         by: str,
         incident_id: str,
         on_progress: Progress = lambda _: None,
-        tally: ErasureProgress | None = None,
+        progress: ErasureProgress | None = None,
         *,
         from_peer: bool = False,
     ) -> ErasureResult:
@@ -246,12 +156,14 @@ class ErasureService:
         erasure = begun or self._erasure_of_incident(incident_id, order)
         if begun is None:
             self._begun.keep(erasure)
-        tally = tally or ErasureProgress()
-        return self._erase(by, erasure, order, f"{INCIDENT} {incident_id}", on_progress, tally)
+        progress = progress or ErasureProgress()
+        return self._erase(by, erasure, order, f"{INCIDENT} {incident_id}", on_progress, progress)
 
     def is_of_pair(self) -> bool:
         """True where the log is shared with another station, or was."""
-        return any(isinstance(one.action, TakeOver) for _, one in actions_of(self._actions()))
+        return any(
+            isinstance(one.action, TakeOver) for _, one in actions_of(self._reading.actions())
+        )
 
     def _erasure_of_person(
         self, person_id: str, order: ErasureOrder | None
@@ -259,17 +171,20 @@ class ErasureService:
         """And whether anything knows the person.  Names matter where a log has any."""
         with self._store.read() as session:
             names = known_names(session, person_id)
-        actions = actions_before(self._actions(), order)
-        set_aside = (record for path in self._set_aside() for record in _actions_in(path))
-        has_older = has_names(one for _, one in actions_of((*actions, *set_aside)))
+        actions = actions_before(self._reading.actions(), order)
+        everywhere = (*actions, *self._reading.actions_set_aside())
+        has_older = has_names(one for _, one in actions_of(everywhere))
         until_ns = self._clock.utc_ns() if order is None else order.t_ns
         found = erasure_of_person(actions, person_id, names if has_older else (), until_ns)
         return found, bool(found.wearings or names)
 
     def _erasure_of_incident(self, incident_id: str, order: ErasureOrder | None) -> Erasure:
-        actions = actions_before(self._actions(), order)
+        actions = actions_before(self._reading.actions(), order)
         return erasure_of_incident(
-            actions, incident_id, self._first_message_ns(actions), is_whole=self._is_whole()
+            actions,
+            incident_id,
+            self._reading.first_message_ns(actions),
+            is_whole=self._reading.is_whole(),
         )
 
     def _ordered(
@@ -293,12 +208,12 @@ class ErasureService:
                     )
                 )
             self._log.complete_segments()  # on the disk, to be read
-            return last_order(self._actions(), kind, subject_id)
+            return last_order(self._reading.actions(), kind, subject_id)
         done = _result(acted)
         if done.refused is not None:
             raise StoreError(done.refused.reason)
         self._log.complete_segments()
-        orders = (order for order, _ in orders_of(self._actions()))
+        orders = (order for order, _ in orders_of(self._reading.actions()))
         unread = ErasureOrder(
             done.action_id, done.t_ns, by
         )  # damaged meanwhile: the log to its end
@@ -311,35 +226,38 @@ class ErasureService:
         order: ErasureOrder | None,
         what: str,
         on_progress: Progress,
-        tally: ErasureProgress,
+        progress: ErasureProgress,
     ) -> ErasureResult:
         self._checkpoints.clear()
-        self._rewrite_log(erasure, order, on_progress, tally)
+        self._remove_recordings(erasure, progress)
+        self._rewriter.rewrite(erasure, order, on_progress, progress)
         if erasure.incident_id:
-            self._erase_radio(erasure, tally)
+            self._erase_radio(erasure, progress)
         with self._store.write() as session:
             forget_in(session, erasure)
-        tally.files += self._store.compact()
+        progress.files += self._store.compact()
         if erasure.incident_id:
-            tally.files += self._imports.remove_all(erasure.incident_id)
+            progress.files += self._imports.remove_all(erasure.incident_id)
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.remove(erasure.incident_id)
-        done = ErasureResult(what, tally.records, tally.files, tally.damaged, tally.kept)
+        done = ErasureResult(
+            what, progress.records, progress.files, progress.damaged, progress.kept
+        )
         kind = "ForgotPerson" if erasure.person_id else FORGOT_INCIDENT
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
         return done
 
-    def _erase_radio(self, erasure: Erasure, tally: ErasureProgress) -> None:
+    def _erase_radio(self, erasure: Erasure, progress: ErasureProgress) -> None:
         """Erase the audio of the incident's time.  Audio of a time at which another incident was
         open belongs to both: it is erased with the last of them.
         """
         with self._store.read() as session:
             erased = erased_incidents(session)
         for from_ns, until_ns in erasure.times_alone(erased):
-            tally.records += self._erase_audio(from_ns, until_ns)
+            progress.records += self._erase_audio(from_ns, until_ns)
         if any(one.incident_id not in erased for one in erasure.others):
-            tally.kept = (RADIO_KEPT,)
+            progress.kept = (RADIO_KEPT,)
 
     def _erase_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""
@@ -352,72 +270,7 @@ class ErasureService:
             if one is not None:
                 _result(one)
 
-    def _rewrite_log(
-        self,
-        erasure: Erasure,
-        order: ErasureOrder | None,
-        on_progress: Progress,
-        tally: ErasureProgress,
-    ) -> None:
-        segments = [*self._log.complete_segments(), *self._set_aside()]
-        clocks, ordered, whole = CaptureClocks(), OrderedPart(order), OrderedPart(None)
-        self._remove_recordings(erasure, tally)
-        tally.files += sum(map(remove_torn, self._folders(segments)))
-        for number, path in enumerate(segments):
-            on_progress(number / len(segments))
-            redactor = Redactor(erasure, clocks, erasure.inserted_in(_actions_in(path)))
-            shared = ordered if path.parent == self._log.folder else whole
-            replace = partial(shared.redacted, redactor=redactor)
-            damage: list[str] = []
-            with self._log.rewriting:
-                changed = rewrite_segment(path, replace, on_damage=self._noting(path, damage))
-            for part in damage:
-                tally.note_damage(part, written_anew=changed > 0)
-            tally.records += changed
-            if changed:
-                tally.files += 1
-                self._log.note_rewritten(path)
-                self._note_in_table(path)
-        on_progress(1.0)
-
-    def _note_in_table(self, path: Path) -> None:
-        """Note the new counts of a segment, so that erased records do not count as missing."""
-        if path.parent == self._log.folder:
-            with SegmentReader(path) as segment:
-                self._records.put_segments([segment_row(segment.info())])
-
-    def _noting(self, path: Path, damage: list[str]) -> Callable[[str], None]:
-        """Written anew without it, a segment would look whole, and nobody would mend it.  Raises
-        StoreError where it is about to be mended.
-        """
-
-        def note(part: str) -> None:
-            if path.parent == self._log.folder and self._mended_first(path, part):
-                raise StoreError(
-                    coded(
-                        "erasure-after-mending",
-                        "{part}; what is lost is fetched from the other station first",
-                        part=part,
-                    )
-                )
-            damage.append(part)
-
-        return note
-
-    def _set_aside(self) -> list[Path]:
-        """Parts of logs that stand beside the log in the station's folder."""
-        station = self._log.folder.parent
-        known = (self._log.folder, DataFolder(station).recordings, DataFolder(station).radio)
-        return sorted(
-            path
-            for path in station.rglob("*.mcap")
-            if not any(path.is_relative_to(folder) for folder in known)
-        )
-
-    def _folders(self, segments: list[Path]) -> set[Path]:
-        return {self._log.folder, *(path.parent for path in segments)}
-
-    def _remove_recordings(self, erasure: Erasure, tally: ErasureProgress) -> None:
+    def _remove_recordings(self, erasure: Erasure, progress: ErasureProgress) -> None:
         """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
         way finds its folder gone, and ends.
         """
@@ -426,39 +279,7 @@ class ErasureService:
         for folder in (recordings / unit_id for unit_id in sorted(erasure.unit_ids)):
             files = sum(1 for path in folder.rglob("*") if path.is_file())
             _remove(folder)
-            tally.files += files
-
-    def _actions(self) -> Sequence[Record]:
-        return list(read_log(self._log.folder, keys={_ACTIONS}))
-
-    def _is_whole(self) -> bool:
-        """True where no segment of the log is missing, and the first is there."""
-        segments = self._log.complete_segments()
-        first = min(map(segment_number, segments), default=1)
-        return first <= 1 and not missing_segments(segments)
-
-    def _first_message_ns(self, actions: Iterable[Record]) -> dict[str, int]:
-        """By unit, of those that were heard before they were registered: of several incidents such
-        a unit is in the one that was open alone then.
-        """
-        registered_ns: dict[str, int] = {}
-        several = False
-        for t_ns, action in actions_of(actions):
-            match action.action:
-                case RegisterUnit(unit_id=unit_id):
-                    registered_ns.setdefault(unit_id, t_ns)
-                case OpenIncident(beside_others=beside_others):
-                    several |= beside_others
-        if not (several and registered_ns):
-            return {}
-        units = {key: one for one in registered_ns for key in _keys_of(one)}
-        received_ns: dict[str, int] = {}
-        for t_ns, key, _ in read_log(
-            self._log.folder, end_ns=max(registered_ns.values()), keys=units
-        ):
-            if t_ns < registered_ns[units[key]]:
-                received_ns.setdefault(units[key], t_ns)
-        return received_ns
+            progress.files += files
 
 
 def _unknown(person_id: str) -> UserError:
@@ -471,12 +292,6 @@ def _unknown(person_id: str) -> UserError:
     )
 
 
-def _keys_of(unit_id: str) -> list[str]:
-    """Under which the log has what a unit, or the agent that tracks for it, said live."""
-    upwards = [one for one in CHANNELS if one.logged and one.direction is Direction.UP]
-    return [channel.key(one) for channel in upwards for one in (unit_id, tracker_id(unit_id))]
-
-
 def _result(acted: Future[ActionResult]) -> ActionResult:
     try:
         return acted.result(_ACTED_WITHIN_S)
@@ -484,11 +299,6 @@ def _result(acted: Future[ActionResult]) -> ActionResult:
         raise StoreError(
             coded("erasure-memory-timeout", "the station did not get to what it holds in memory")
         ) from error
-
-
-def _actions_in(path: Path) -> Iterator[Record]:
-    with SegmentReader(path) as segment:
-        yield from segment.records(keys={_ACTIONS})
 
 
 def _remove(folder: Path) -> None:

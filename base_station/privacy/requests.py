@@ -14,8 +14,8 @@ from pathlib import Path
 
 import msgspec
 
+from base_station.privacy.erasure_progress import ErasureResult, Progress
 from base_station.privacy.erasure_queue import ErasureJob, ErasureState
-from base_station.privacy.erasure_service import ErasureResult, Progress
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.job_queue import JobList
 from base_station.storage.private_files import write_atomically

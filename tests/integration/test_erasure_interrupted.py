@@ -10,9 +10,9 @@ from typing import Any, cast
 import msgspec
 import pytest
 
-from base_station.privacy import erasure_service
+from base_station.privacy import erasure_service, log_rewriter
+from base_station.privacy.erasure_progress import ErasureProgress
 from base_station.privacy.erasure_queue import ErasureQueue
-from base_station.privacy.erasure_service import ErasureProgress
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
@@ -95,7 +95,7 @@ def _third_segment() -> Callable[..., int]:
 
 
 BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
-    "log": lambda _store, _records: (erasure_service, "rewrite_segment", _third_segment()),
+    "log": lambda _store, _records: (log_rewriter, "rewrite_segment", _third_segment()),
     "store": lambda _store, _records: (erasure_service, "forget_in", fails),
     "compact": lambda store, _records: (store, "compact", fails),
     "audit": lambda _store, records: (records, "audit", fails),
@@ -178,6 +178,6 @@ def test_erasure_of_a_removed_person_without_units_is_in_the_audit(tmp_path: Pat
                 service.erase_person("ada", person_id)
         with pytest.raises(UserError, match="knows a person"):
             service.erase_person("ada", person_id)
-        service.erase_person("ada", person_id, tally=ErasureProgress(again=True))
+        service.erase_person("ada", person_id, progress=ErasureProgress(again=True))
         (entry,) = records.audit_entries(EVER)
     assert entry.detail == f"person {person_id}: 0 records of the log in 0 files"

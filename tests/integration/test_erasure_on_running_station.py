@@ -14,7 +14,8 @@ import pytest
 from base_station.app.station_storage import open_storage
 from base_station.engine.ports import ActionResult
 from base_station.privacy import erasure_service
-from base_station.privacy.erasure_service import ClosedLog, ErasureService
+from base_station.privacy.erasure_service import ErasureService
+from base_station.privacy.log_files import ClosedLog
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.models import IncidentRow

@@ -8,7 +8,8 @@ from itertools import count
 from pathlib import Path
 
 from base_station.engine.ports import ActionResult
-from base_station.privacy.erasure_service import Act, ClosedLog, ErasureService
+from base_station.privacy.erasure_service import Act, ErasureService
+from base_station.privacy.log_files import ClosedLog
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.records import Records

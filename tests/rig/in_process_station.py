@@ -40,7 +40,8 @@ from base_station.engine.sample_intake import SampleIntake
 from base_station.engine.trail_encoder import TrailEncoder
 from base_station.fusion import FUSERS
 from base_station.privacy.erasure_queue import ErasureQueue
-from base_station.privacy.erasure_service import ClosedLog, ErasureService
+from base_station.privacy.erasure_service import ErasureService
+from base_station.privacy.log_files import ClosedLog
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.archived import ArchivedCopies

@@ -41,7 +41,7 @@ def _me(principal: Principal, station: LoginServices) -> Me:
 
 
 class Ticket(BaseModel):
-    """For the other station's console; its holder is logged in there as the user who requested it."""
+    """Logs its holder in at the other station's console, as the user who requested it."""
 
     ticket: str
     lasts_s: int

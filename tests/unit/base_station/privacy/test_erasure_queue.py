@@ -9,18 +9,14 @@ from typing import cast
 
 import pytest
 
+from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
 from base_station.privacy.erasure_queue import (
     ErasureJob,
     ErasureQueue,
     ErasureState,
     request_again,
 )
-from base_station.privacy.erasure_service import (
-    ErasureProgress,
-    ErasureResult,
-    ErasureService,
-    Progress,
-)
+from base_station.privacy.erasure_service import ErasureService
 from shared.errors import StoreError, UserError
 from tests.rig.waiting import until
 
@@ -37,20 +33,20 @@ class StubEraser:
         self.done: list[str] = []
         self.from_peer: list[bool] = []
 
-    def person(
+    def erase_person(
         self,
         by: str,
         person_id: str,
         on_progress: Progress,
-        tally: ErasureProgress,
+        progress: ErasureProgress,
         *,
         from_peer: bool,
     ) -> ErasureResult:
         self.from_peer.append(from_peer)
         self.began.append(person_id)
-        self.again.append(tally.again)
+        self.again.append(progress.again)
         on_progress(0.1)
-        tally.records, tally.files = tally.records + 7, tally.files + 2
+        progress.records, progress.files = progress.records + 7, progress.files + 2
         if self.fails:
             raise self.fails.pop(0)
         on_progress(0.5)
@@ -58,7 +54,7 @@ class StubEraser:
         self.go.wait()
         on_progress(1.0)
         self.done.append(person_id)
-        return ErasureResult(f"person {person_id} by {by}", tally.records, tally.files)
+        return ErasureResult(f"person {person_id} by {by}", progress.records, progress.files)
 
 
 def desk(
