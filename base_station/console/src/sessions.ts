@@ -57,7 +57,9 @@ export async function resume(): Promise<void> {
   const ticket = ticketOf(location.hash);
   if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
   try {
-    const me = await inTime(api.me()).catch((error) => (ticket === "" ? Promise.reject(error) : api.loginWithTicket(ticket)));
+    const me = await inTime(api.me()).catch((error) =>
+      ticket === "" ? Promise.reject(error) : api.loginWithTicket(ticket),
+    );
     stationAway.value = false;
     if (me.must_change_password) return; // the login form asks for it
     begin(me);
