@@ -18,6 +18,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from base_station.api.login_throttle import LoginThrottle, too_many_attempts
 from base_station.api.problems import Problem, problem_response
+from shared.coded_text import coded
 
 T = TypeVar("T")
 
@@ -126,7 +127,9 @@ class _BoundedWorker:
 
 
 def _too_many_logins() -> Problem:
-    detail = "Too many people log in at the moment; try again in a few seconds."
+    detail = coded(
+        "logins-too-many", "Too many people log in at the moment; try again in a few seconds."
+    )
     return Problem(503, detail, {"Retry-After": "5"})
 
 

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from base_station.accounts.principals import BARRED
 from base_station.storage.db.window import FOREVER_NS, Window
 from shared.clock import NS_PER_MS
+from shared.coded_text import coded
 
 MAX_BYTES = 65_536  # of a form
 MAX_UPLOAD_BYTES = 12_000_000  # a picture or a plan
@@ -28,16 +29,23 @@ IDEMPOTENCY_KEY = r'^("[!#-~]{1,128}"|[!#-~]{1,128})$'  # the draft has it in qu
 _ALARM_ID = r"^[A-Za-z0-9_.:@ -]{1,200}$"  # names a part of the station, and whose
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"
-_UNIT_ID_DESCRIPTION = "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
 
 PATTERN_DESCRIPTIONS = {  # what each pattern asks for, in words
-    _PRINTABLE: "must be one line of plain characters",
-    _NAME: "must be one line of plain characters, and not blank",
-    ID: "must be 1 to 128 letters, digits and _.:-",
-    IDEMPOTENCY_KEY: "must be 1 to 128 letters, digits and signs without a space, in quotes or not",
-    _ALARM_ID: "must be 1 to 200 letters, digits, spaces and _.:@-",
-    _WHOLE_UNIT_ID: _UNIT_ID_DESCRIPTION,
-    _UNIT_ID_OR_NONE: f"{_UNIT_ID_DESCRIPTION}; or empty",
+    _PRINTABLE: coded("field-one-line", "must be one line of plain characters"),
+    _NAME: coded("field-name", "must be one line of plain characters, and not blank"),
+    ID: coded("field-id", "must be 1 to 128 letters, digits and _.:-"),
+    IDEMPOTENCY_KEY: coded(
+        "field-key",
+        "must be 1 to 128 letters, digits and signs without a space, in quotes or not",
+    ),
+    _ALARM_ID: coded("field-alarm-id", "must be 1 to 200 letters, digits, spaces and _.:@-"),
+    _WHOLE_UNIT_ID: coded(
+        "field-unit-id", "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
+    ),
+    _UNIT_ID_OR_NONE: coded(
+        "field-unit-id-or-none",
+        "must be 1 to 64 letters, digits and _.-, the first a letter or digit; or empty",
+    ),
 }
 
 Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NAME)]

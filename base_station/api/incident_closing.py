@@ -8,6 +8,7 @@ import msgspec
 
 from base_station.api.problems import Problem
 from base_station.views.wire import AlarmView, Snapshot, UnitView
+from shared.coded_text import Measure, coded
 
 MAX_NAMED = 20  # of each kind, in the sentence; for programs all ids stand beside it
 
@@ -26,14 +27,12 @@ class ClosingObstacles(msgspec.Struct, frozen=True):
         inside = [one for one in self.inside if one.unit_id not in unit_ids]
         if not (alarms or inside):
             return
-        parts = []
-        if alarms:
-            parts.append(f"Open alarms: {_joined([alarm.text for alarm in alarms])}.")
-        if inside:
-            parts.append(f"Inside: {_joined([_name(unit) for unit in inside])}.")
-        detail = (
-            f"The incident is not closed. {' '.join(parts)} To close it all the same, name them in "
-            "despite_alarm_ids and despite_unit_ids."
+        detail = coded(
+            "incident-not-closed",
+            "The incident is not closed. {alarms}{inside}To close it all the same, name them in "
+            "despite_alarm_ids and despite_unit_ids.",
+            alarms=_counted("Open alarms", [alarm.text for alarm in alarms]),
+            inside=_counted("Inside", [_name(unit) for unit in inside]),
         )
         members = {
             "despite_alarm_ids": [alarm.alarm_id for alarm in self.alarms],
@@ -57,9 +56,11 @@ def closing_obstacles(picture: Snapshot, incident_id: str) -> ClosingObstacles:
     )
 
 
-def _joined(texts: Sequence[str]) -> str:
+def _counted(what: str, texts: Sequence[str]) -> Measure:
+    """The number of them, with the first of them as a sentence; no sentence where there is none."""
     rest = len(texts) - MAX_NAMED
-    return "; ".join([*texts[:MAX_NAMED], *([f"{rest} more"] if rest > 0 else [])])
+    joined = "; ".join([*texts[:MAX_NAMED], *([f"{rest} more"] if rest > 0 else [])])
+    return Measure(len(texts), f"{what}: {joined}. " if texts else "")
 
 
 def _name(unit: UnitView) -> str:

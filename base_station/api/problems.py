@@ -13,24 +13,29 @@ from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from base_station.api.field_errors import error_sentence
+from base_station.api.field_errors import error_sentence, joined_sentences
 from base_station.api.forms import (
     MAX_BYTES,
     MAX_DISPATCH_BYTES,
     MAX_SAMPLES_BYTES,
     MAX_UPLOAD_BYTES,
 )
-from shared.coded_text import code_of_text, join_texts, text_of_error
+from shared.coded_text import Measure, code_of_text, coded, text_of_error
 from shared.errors import ArchiveError, ConfigError, LogError, MusterError, StoreError, UserError
 
 PROBLEM_MEDIA_TYPE = "application/problem+json"
 
 _log = logging.getLogger(__name__)
-_TOO_LARGE = (
-    f"This is too large: a picture, a plan or a map may have {MAX_UPLOAD_BYTES // 10**6} MB, "
-    f"samples {MAX_SAMPLES_BYTES // 10**6} MB, a dispatch or an alert "
-    f"{MAX_DISPATCH_BYTES // 10**6} MB, anything else {MAX_BYTES // 10**3} kB."
+_TOO_LARGE = coded(
+    "body-too-large",
+    "This is too large: a picture, a plan or a map may have {upload_mb}, samples {samples_mb}, a "
+    "dispatch or an alert {dispatch_mb}, anything else {other_mb}.",
+    upload_mb=Measure(MAX_UPLOAD_BYTES / 1e6, f"{MAX_UPLOAD_BYTES // 10**6} MB"),
+    samples_mb=Measure(MAX_SAMPLES_BYTES / 1e6, f"{MAX_SAMPLES_BYTES // 10**6} MB"),
+    dispatch_mb=Measure(MAX_DISPATCH_BYTES / 1e6, f"{MAX_DISPATCH_BYTES // 10**6} MB"),
+    other_mb=Measure(MAX_BYTES / 1e6, f"{MAX_BYTES // 10**3} kB"),
 )
+_FAILED = coded("station-failed", "The station has failed; see its log for the error.")
 
 
 class ProblemDocument(BaseModel):
@@ -107,7 +112,7 @@ def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None
             else error_sentence(one)
             for one in error.errors()
         )
-        return problem_response(422, join_texts(sentences))
+        return problem_response(422, joined_sentences(sentences))
 
     @app.exception_handler(MusterError)
     async def failed(request: Request, error: MusterError) -> JSONResponse:
@@ -140,7 +145,7 @@ class UnhandledErrorMiddleware:
             if scope["type"] != "http" or started:
                 raise
             _log.error("%s %s failed", scope["method"], scope["path"], exc_info=error)
-            answer = problem_response(500, "The station has failed; see its log for the error.")
+            answer = problem_response(500, _FAILED)
             await answer(scope, receive, send)
 
 
@@ -168,8 +173,13 @@ class BodyTooLargeMiddleware:
 
 def _method_refused(request: Request, allowed: str) -> JSONResponse:
     if not allowed:
-        return problem_response(404, "There is no such address.")
-    detail = f"{request.method} is not answered at this address; use one of: {allowed}."
+        return problem_response(404, coded("no-such-address", "There is no such address."))
+    detail = coded(
+        "method-not-answered",
+        "{method} is not answered at this address; use one of: {allowed}.",
+        method=request.method,
+        allowed=allowed,
+    )
     return problem_response(405, detail, {"Allow": allowed})
 
 
@@ -190,5 +200,13 @@ def _expected_body(request: Request) -> str:
     route = request.scope["route"]
     kind = route.body_field.field_info.media_type
     if kind == "application/json":
-        return f"send one JSON object as the body, with the header Content-Type: {kind}"
-    return f"send the file itself as the body, with the header Content-Type: {kind} or its like"
+        return coded(
+            "body-json",
+            "send one JSON object as the body, with the header Content-Type: {type}",
+            type=kind,
+        )
+    return coded(
+        "body-file",
+        "send the file itself as the body, with the header Content-Type: {type} or its like",
+        type=kind,
+    )

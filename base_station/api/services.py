@@ -44,11 +44,12 @@ from base_station.storage.projection import ProjectedTables
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import Snapshot
 from shared.clock import Clock
-from shared.coded_text import coded, map_texts
+from shared.coded_text import coded, map_texts, text_of_error
 from shared.errors import StoreError, UserError
 from shared.messages.station import Action
 
 ACTION_TIMEOUT_S = 10.0
+_TOO_BUSY = coded("station-too-busy", "the station is too busy to say this now; try again")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,14 +110,7 @@ class Services(LoginServices):
             nameless = with_references(action, self.roster.ids_by_name())
             done = self.gate.submit(by, nameless, action_id).result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            advice = (
-                "with the same Idempotency-Key it is done once, however often it is sent"
-                if action_id
-                else "look before you do it again"
-            )
-            raise StoreError(
-                f"the station is busy and has not done this yet; it may still do it: {advice}"
-            ) from None
+            raise StoreError(_may_still_be_done(is_safe_again=bool(action_id))) from None
         if not is_same_request(action_id, done.action_id):
             raise idempotency_key_reused()
         if done.refused is not None:
@@ -129,16 +123,14 @@ class Services(LoginServices):
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            raise StoreError(
-                coded("station-too-busy", "the station is too busy to say this now; try again")
-            ) from None
+            raise StoreError(_TOO_BUSY) from None
 
     def picture_with_trails(self) -> tuple[Snapshot, Trails]:
         """Gives the same with the trails of all units."""
         try:
             return self.hub.picture().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            raise StoreError("the station is too busy to say this now; try again") from None
+            raise StoreError(_TOO_BUSY) from None
 
     def worn_by(self, person_id: str) -> Sequence[str]:
         """Units that the person wears now."""
@@ -149,11 +141,43 @@ class Services(LoginServices):
         ]
 
 
+def audit_given_out(station: Services, by: str, kind: str, what: str) -> None:
+    """Note in the audit what is given out next.  Problem 503 where it does not take that."""
+    try:
+        station.records.audit(by, kind, what)
+    except StoreError as error:
+        raise Problem(
+            503,
+            coded(
+                "export-not-audited",
+                "Nothing is given out that the audit cannot say: {reason}.",
+                reason=text_of_error(error),
+            ),
+        ) from error
+
+
+def _may_still_be_done(*, is_safe_again: bool) -> str:
+    if is_safe_again:
+        return coded(
+            "busy-send-again",
+            "the station is busy and has not done this yet; it may still do it: with the same "
+            "Idempotency-Key it is done once, however often it is sent",
+        )
+    return coded(
+        "busy-look-first",
+        "the station is busy and has not done this yet; it may still do it: look before you do it "
+        "again",
+    )
+
+
 def idempotency_key_reused() -> Problem:
     return Problem(
         422,
-        "This Idempotency-Key came with another request before, and this one was not done: give "
-        "every request a key of its own.",
+        coded(
+            "idempotency-key-reused",
+            "This Idempotency-Key came with another request before, and this one was not done: "
+            "give every request a key of its own.",
+        ),
     )
 
 

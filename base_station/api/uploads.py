@@ -22,6 +22,7 @@ from base_station.api.authentication import principal_of, unauthenticated
 from base_station.api.forms import MAX_UPLOAD_BYTES
 from base_station.api.problems import Problem
 from base_station.api.services import services_of
+from shared.coded_text import Measure, coded
 
 _MAX_TURNS = 4  # uploads whose bodies of 12 MB are in memory
 _MAX_TURNS_PER_ACCOUNT = 2  # one is read while another is decoded
@@ -141,7 +142,11 @@ class UploadRoute(APIRoute):
 def _too_slow() -> Problem:
     return Problem(
         408,
-        f"This took longer than {TURN_S:.0f} s to come, and others waited; make it smaller, or "
-        "send it again over a better connection.",
+        coded(
+            "upload-too-slow",
+            "This took longer than {longest_s} to come, and others waited; make it smaller, or "
+            "send it again over a better connection.",
+            longest_s=Measure(TURN_S, f"{TURN_S:.0f} s"),
+        ),
         {"Connection": "close"},
     )

@@ -17,7 +17,7 @@ from base_station.core.state.command import SentCommand
 from base_station.core.state.duty import Duty, ParConfirmation, Source
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import Measure, Term, coded
 from shared.errors import UserError
 from shared.messages import CommandKind
 from shared.messages.station import (
@@ -163,11 +163,17 @@ def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
             coded("not-on-duty", "{name} is not on duty in an open incident", name=unit.name)
         )
     if resting == (duty.rest_since_ns is not None):
-        raise UserError(f"{unit.name} is {'resting' if resting else 'at work'} already")
+        raise UserError(_rest_unchanged(unit.name, resting))
     duty.rest_since_ns = state.t_ns if resting else None
     duty.ready_ns = state.t_ns
     duty.work_since_ns = None
     _update_due(state, unit, duty)
+
+
+def _rest_unchanged(name: str, resting: bool) -> str:
+    if resting:
+        return coded("rests-already", "{name} is resting already", name=name)
+    return coded("works-already", "{name} is at work already", name=name)
 
 
 def update_work(state: StationState, unit: UnitState) -> bool:
@@ -237,5 +243,11 @@ def _check(par_interval_s: float, work_limit_s: float) -> None:
     for what, time_s in (("roll call", par_interval_s), ("rest", work_limit_s)):
         if not (math.isfinite(time_s) and SHORTEST_S <= time_s <= LONGEST_S):
             raise UserError(
-                f"the time until the next {what} is {SHORTEST_S:.0f} s to {LONGEST_S / 3600:.0f} h"
+                coded(
+                    "incident-time-unfit",
+                    "the time until the next {what} is {shortest_s} to {longest_s}",
+                    what=Term(what.replace(" ", "_"), what),
+                    shortest_s=Measure(SHORTEST_S, f"{SHORTEST_S:.0f} s"),
+                    longest_s=Measure(LONGEST_S, f"{LONGEST_S / 3600:.0f} h"),
+                )
             )

@@ -16,7 +16,7 @@ from base_station.drawings.ifc_place import ModelPlace, place_of
 from base_station.drawings.ifc_plan import DrawnFloors, draw_floors
 from base_station.drawings.ifc_sections import Solid
 from base_station.drawings.shapes import MOST_POINTS, box_of, plan_of
-from shared.coded_text import CodedText, coded
+from shared.coded_text import CodedText, Measure, coded
 from shared.errors import UserError
 
 BEGINS = b"ISO-10303-21"
@@ -74,12 +74,20 @@ def read_zipped_ifc(content: bytes, options: Options) -> Draft:
             entry = next(one for one in archive.infolist() if _is_ifc(one))
             if entry.file_size > _MOST_UNPACKED_BYTES:
                 raise UserError(
-                    f"the IFC in this ZIP file is larger than {_MOST_UNPACKED_BYTES // 10**6} MB; "
-                    "export walls, doors, stairs and spaces only"
+                    coded(
+                        "ifc-zip-too-large",
+                        "the IFC in this ZIP file is larger than {most_mb}; export walls, doors, "
+                        "stairs and spaces only",
+                        most_mb=Measure(
+                            _MOST_UNPACKED_BYTES / 1e6, f"{_MOST_UNPACKED_BYTES // 10**6} MB"
+                        ),
+                    )
                 )
             unpacked = archive.read(entry)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as error:
-        raise UserError(f"this ZIP file cannot be read: {error}") from error
+        raise UserError(
+            coded("ifc-zip-unreadable", "this ZIP file cannot be read: {error}", error=str(error))
+        ) from error
     return read_ifc(unpacked, options)
 
 

@@ -18,7 +18,11 @@ MOST_PIXELS = 52_000_000  # of a file: a camera's 50 million are a few more
 _SIDES_PX = (2048, 1448, 1024, 724)
 _MOST_BYTES = 300_000
 _FORMATS = ("JPEG", "PNG", "WEBP")
-_TOO_LARGE = f"the picture has more than {MOST_PIXELS // 1_000_000} million pixels; make it smaller"
+_TOO_LARGE = coded(
+    "picture-too-large",
+    "the picture has more than {most_million} million pixels; make it smaller",
+    most_million=MOST_PIXELS // 1_000_000,
+)
 
 
 def read_picture(content: bytes) -> DrawnPicture:

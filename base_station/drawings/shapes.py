@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from shared.coded_text import coded
+from shared.coded_text import Measure, coded
 from shared.errors import UserError
 
 STOREY_M = 3.2  # where the file does not have the height of a floor
@@ -69,8 +69,11 @@ def require_size(points: Sequence[Point]) -> None:
     size_m = max(east - west, north - south)
     if not _LEAST_SIZE_M <= size_m <= MOST_SIZE_M:
         raise UserError(
-            f"the drawing is {size_m:.4g} m wide: choose another unit of length, or send one "
-            "building"
+            coded(
+                "drawing-size-unfit",
+                "the drawing is {wide_m} wide: choose another unit of length, or send one building",
+                wide_m=Measure(size_m, f"{size_m:.4g} m"),
+            )
         )
 
 

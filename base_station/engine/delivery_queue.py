@@ -13,7 +13,11 @@ from base_station.engine.admission import Admission
 from base_station.engine.ports import DeliveryResult, Log
 from shared.clock import Clock
 from shared.codec import header_of
+from shared.coded_text import coded
 from shared.errors import StoreError
+
+_STOPPING = coded("stopping-send-again", "the station is stopping; send it again when it runs")
+_DISK_SLOW = coded("disk-slow", "the disk is slow")
 
 _Waiting = tuple[Sequence[tuple[str, bytes]], Future[DeliveryResult]]
 
@@ -52,8 +56,12 @@ class DeliveryQueue:
             if not future.set_running_or_notify_cancel():
                 continue
             if kept is None or not is_on_disk:
-                problem = self._log.problem or "the disk is slow"
-                future.set_exception(StoreError(f"not recorded: {problem}; send it again"))
+                problem = coded(
+                    "not-recorded",
+                    "not recorded: {reason}; send it again",
+                    reason=self._log.problem or _DISK_SLOW,
+                )
+                future.set_exception(StoreError(problem))
             else:
                 future.set_result(kept)
 
@@ -61,7 +69,7 @@ class DeliveryQueue:
         """Refuse what waits still, as the engine has ended."""
         while self._waiting:
             future = self._waiting.popleft()[1]
-            future.set_exception(StoreError("the station is stopping; send it again when it runs"))
+            future.set_exception(StoreError(_STOPPING))
 
     def _is_kept(self, payload: bytes) -> bool:
         """False of a message that the log did not take: it counts as missing."""

@@ -16,6 +16,7 @@ from base_station.engine.ports import Log, Record
 from base_station.engine.projector import Projector
 from shared.channels import ALARM, FUSED
 from shared.codec import encode
+from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition
 
@@ -89,7 +90,13 @@ class WriteAhead:
         event = self.event_of(t_ns, key, payload)
         self._urgent = True
         if not self._log.write(event.t_ns, key, payload):
-            raise StoreError(f"this is not done, as it cannot be recorded: {self._log.problem}")
+            raise StoreError(
+                coded(
+                    "not-recorded-not-done",
+                    "this is not done, as it cannot be recorded: {reason}",
+                    reason=self._log.problem,
+                )
+            )
         return self._apply(event)
 
     def event_of(self, t_ns: int, key: str, payload: bytes) -> StationEvent:

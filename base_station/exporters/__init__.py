@@ -8,6 +8,7 @@ from base_station.exporters.gpx import GPX
 from base_station.exporters.interface import Exporter
 from base_station.exporters.kml import KML
 from base_station.exporters.parquet import PARQUET
+from shared.coded_text import coded
 from shared.errors import UserError
 
 EXPORTERS: tuple[Exporter, ...] = (GPX, KML, GEOJSON, CSV, PARQUET)
@@ -22,4 +23,11 @@ def exporter_of(name: str) -> Exporter:
         if wanted in (exporter.name, exporter.suffix):
             return exporter
     known = ", ".join(exporter.name for exporter in EXPORTERS)
-    raise UserError(f"there is no format {name!r}; formats are {known}")
+    raise UserError(
+        coded(
+            "export-format-unknown",
+            "there is no format '{format}'; formats are {known}",
+            format=name,
+            known=known,
+        )
+    )

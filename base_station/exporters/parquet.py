@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -86,8 +87,11 @@ def _library(name: str) -> ModuleType:
         return import_module(name)
     except ImportError as error:
         raise UserError(
-            "the library pyarrow, which writes Parquet, is not installed: "
-            "pip install --require-hashes -r deploy/requirements-parquet.lock"
+            coded(
+                "parquet-library-missing",
+                "the library pyarrow, which writes Parquet, is not installed: "
+                "pip install --require-hashes -r deploy/requirements-parquet.lock",
+            )
         ) from error
 
 

@@ -9,7 +9,7 @@ import msgspec
 
 from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
 from base_station.storage.db.window import FOREVER_NS
-from shared.coded_text import coded
+from shared.coded_text import Term, coded
 from shared.errors import UserError
 
 
@@ -59,8 +59,13 @@ class TrackSelection:
         unknown = [name for name in self.names if name.casefold() not in known]
         if unknown:
             raise UserError(
-                f"{unknown[0]!r} is no unit, person or crew with a track in this incident; there "
-                f"are {', '.join(sorted(people)) or 'none'}"
+                coded(
+                    "export-selection-unknown",
+                    "'{name}' is no unit, person or crew with a track in this incident; there "
+                    "are {known}",
+                    name=unknown[0],
+                    known=", ".join(sorted(people)) or Term("none", "none"),
+                )
             )
 
 

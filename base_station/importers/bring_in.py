@@ -19,7 +19,7 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.imports import ImportedContent, import_id_of
 from shared.clock import NS_PER_S
-from shared.coded_text import coded, text_of_error
+from shared.coded_text import Measure, coded, text_of_error
 from shared.errors import StoreError, UserError
 from shared.geo import Anchor
 from shared.messages.station import ImportFile
@@ -68,7 +68,13 @@ class ImportDesk:
             import_id, sha256 = import_id_of(path)
             size_bytes = path.stat().st_size
         except OSError as error:
-            raise StoreError(f"the file cannot be read: {error.strerror or error}") from error
+            raise StoreError(
+                coded(
+                    "import-file-unreadable",
+                    "the file cannot be read: {error}",
+                    error=error.strerror or str(error),
+                )
+            ) from error
         entry = self.catalogue.entry(self.incident.incident_id, import_id)
         if entry is not None:
             _require_same_shift(entry, options)
@@ -120,9 +126,17 @@ class ImportDesk:
             return
         off_h = (first_ns - from_ns) / NS_PER_S / 3600.0
         raise UserError(
-            f"it is of {_utc(first_ns)} to {_utc(last_ns)}, and the incident was from "
-            f"{_utc(from_ns)} to {_utc(until_ns)}: choose another incident; or, where the clock "
-            f"that made it was off (by about {off_h:+.1f} h), give the seconds to add (--shift-s)"
+            coded(
+                "import-another-time",
+                "it is of {first_utc_s} to {last_utc_s}, and the incident was from {from_utc_s} "
+                "to {until_utc_s}: choose another incident; or, where the clock that made it was "
+                "off (by about {off_h} h), give the seconds to add (--shift-s)",
+                first_utc_s=_utc(first_ns),
+                last_utc_s=_utc(last_ns),
+                from_utc_s=_utc(from_ns),
+                until_utc_s=_utc(until_ns),
+                off_h=Measure(round(off_h, 1), f"{off_h:+.1f}"),
+            )
         )
 
     def _far(self, content: ImportedContent) -> Sequence[str]:
@@ -140,10 +154,16 @@ class ImportDesk:
 def _require_same_shift(entry: ImportRow, options: ImportOptions) -> None:
     if entry.shift_s != options.shift_s:
         raise UserError(
-            f"{options.file_name} is in this incident already, with {entry.shift_s:g} s added to "
-            "its times: take it out first, then bring it in anew"
+            coded(
+                "import-other-shift",
+                "{file} is in this incident already, with {shift} s added to its times: take it "
+                "out first, then bring it in anew",
+                file=options.file_name,
+                shift=Measure(entry.shift_s, f"{entry.shift_s:g}"),
+            )
         )
 
 
-def _utc(t_ns: int) -> str:
-    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"
+def _utc(t_ns: int) -> Measure:
+    t_s = t_ns // NS_PER_S
+    return Measure(t_s, f"{datetime.fromtimestamp(t_s, UTC):%Y-%m-%d %H:%M:%S} UTC")

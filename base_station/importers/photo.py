@@ -74,7 +74,14 @@ def _place(gps: _Tags) -> tuple[float, float]:
         ) from error
     lat_deg, lon_deg = -lat_deg if south else lat_deg, -lon_deg if west else lon_deg
     if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0):  # no number is neither
-        raise UserError(f"the place in its Exif data is none: {lat_deg}, {lon_deg}")
+        raise UserError(
+            coded(
+                "photo-import-place-unfit",
+                "the place in its Exif data is none: {lat_deg}, {lon_deg}",
+                lat_deg=str(lat_deg),
+                lon_deg=str(lon_deg),
+            )
+        )
     return lat_deg, lon_deg
 
 
@@ -117,8 +124,13 @@ def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[in
         return _to_ns(local.replace(tzinfo=timezone(timedelta(hours=utc_offset_h)))), ""
     if fix_ns is None:
         raise UserError(
-            f"it was taken at {taken} by a clock whose time zone it does not state: give the hours "
-            "of that before UTC (--utc-offset-h), for example 2 for Central European Summer Time"
+            coded(
+                "photo-import-no-zone",
+                "it was taken at {taken} by a clock whose time zone it does not state: give the "
+                "hours of that before UTC (--utc-offset-h), for example 2 for Central European "
+                "Summer Time",
+                taken=taken,
+            )
         )
     return fix_ns, _OF_FIX
 

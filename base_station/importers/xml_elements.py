@@ -14,6 +14,7 @@ from defusedxml.ElementTree import iterparse
 
 from base_station.storage.imports import ImportedPoint
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 
 _DEEPEST = 100  # elements in each other; folders of KML are a few
@@ -38,7 +39,13 @@ def elements_of(path: Path, damage: list[str]) -> Iterator[XmlElement]:
             if event == "start":
                 parents.append(element)
                 if len(parents) > _DEEPEST:
-                    raise UserError(f"it is no file of tracks: its elements lie {_DEEPEST} deep")
+                    raise UserError(
+                        coded(
+                            "import-too-deep",
+                            "it is no file of tracks: its elements lie {deepest} deep",
+                            deepest=_DEEPEST,
+                        )
+                    )
                 continue
             parents.pop()
             parent = parents[-1] if parents else None
@@ -52,8 +59,11 @@ def elements_of(path: Path, damage: list[str]) -> Iterator[XmlElement]:
                 parent.remove(element)
     except DefusedXmlException as error:
         raise UserError(
-            "it has entities or a document type, which no track needs and which can fill the "
-            "memory: it is not read"
+            coded(
+                "import-has-entities",
+                "it has entities or a document type, which no track needs and which can fill the "
+                "memory: it is not read",
+            )
         ) from error
     except (ParseError, ValueError) as error:
         damage.append(f"it cannot be read to its end ({error}): what stands behind is lost")

@@ -15,6 +15,7 @@ from base_station.core.erasure.erasure import (
     inserted_action_id,
 )
 from base_station.storage.private_files import write_atomically
+from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.messages.station import Assign
 
@@ -72,8 +73,13 @@ class PendingErasure:
             return []
         except (OSError, msgspec.DecodeError) as error:
             raise StoreError(
-                f"{self._path} tells what is being forgotten and cannot be read ({error}): "
-                "restore it from a backup, or remove it and forget again"
+                coded(
+                    "erasure-list-unreadable",
+                    "{path} tells what is being forgotten and cannot be read ({error}): restore "
+                    "it from a backup, or remove it and forget again",
+                    path=str(self._path),
+                    error=str(error),
+                )
             ) from error
         return [_with_actions(one, before) for one, before in zip(found, older, strict=True)]
 

@@ -20,6 +20,7 @@ from base_station.radio.opus import (
 from base_station.radio.packets import Packet, packet_of
 from base_station.radio.spans import ChannelSpans, joined, spans_of
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.mcap_log import (
     LogRecord,
@@ -136,7 +137,14 @@ def _segment_spans(path: Path) -> ChannelSpans:
     try:
         file = path.stat()
     except OSError as error:
-        raise LogError(f"{path} cannot be read ({error.strerror}): check the disk") from error
+        raise LogError(
+            coded(
+                "radio-file-unreadable",
+                "{path} cannot be read ({error}): check the disk",
+                path=str(path),
+                error=str(error.strerror),
+            )
+        ) from error
     return _read_spans(path, file.st_ino, file.st_mtime_ns, file.st_size)
 
 

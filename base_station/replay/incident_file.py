@@ -28,6 +28,7 @@ from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.models import IncidentRow
 from shared.channels import DESCRIPTION, OPERATOR, is_backfilled
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import LogError, UserError
 from shared.mcap_log import LogRecord, Segment, SegmentIdentity, enclosures_of, read_attached
 from shared.messages import STATION_ID, OperatorAction
@@ -275,6 +276,11 @@ def read_incident_file(path: Path) -> IncidentInFile | None:
         return None
     except (KeyError, msgspec.MsgspecError) as error:
         raise UserError(
-            f"{path} is marked as an incident of Muster, and cannot be read as one ({error}): "
-            "get it once more"
+            coded(
+                "incident-file-damaged",
+                "{path} is marked as an incident of Muster, and cannot be read as one ({error}): "
+                "get it once more",
+                path=str(path),
+                error=str(error),
+            )
         ) from error

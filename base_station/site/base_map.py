@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import msgspec
 
 from base_station.site.utm import lat_lon_of, zone_of
-from shared.coded_text import coded
+from shared.coded_text import Measure, coded
 from shared.errors import ConfigError
 
 DEGREES, WEB_MAPS = "EPSG:4326", "EPSG:3857"
@@ -64,8 +64,15 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
     ]
     if not all(SMALLEST_M <= side_m <= LARGEST_M for side_m in sides_m):
         raise ConfigError(
-            f"the picture would be {sides_m[0]:.0f} by {sides_m[1]:.0f} m large; from "
-            f"{SMALLEST_M:.0f} to {LARGEST_M:.0f} m make sense"
+            coded(
+                "map-size-unfit",
+                "the picture would be {wide_m} by {high_m} m large; from {smallest_m} to "
+                "{largest_m} m make sense",
+                wide_m=Measure(sides_m[0], f"{sides_m[0]:.0f}"),
+                high_m=Measure(sides_m[1], f"{sides_m[1]:.0f}"),
+                smallest_m=Measure(SMALLEST_M, f"{SMALLEST_M:.0f}"),
+                largest_m=Measure(LARGEST_M, f"{LARGEST_M:.0f}"),
+            )
         )
     if abs(a * e - b * d) < 1e-6 * math.hypot(a, d) * math.hypot(b, e):
         raise ConfigError(

@@ -25,7 +25,7 @@ import msgspec
 from base_station.site.plan_features import Floor, Metres, read_feature, require_strict
 from base_station.site.plan_pictures import require_pictures
 from base_station.site.storeys import Storey, floor_at, floor_probability
-from shared.coded_text import coded, text_of_error
+from shared.coded_text import Measure, coded, text_of_error
 from shared.errors import UserError
 
 OUTLINE_HYSTERESIS_M = 1.5
@@ -190,8 +190,12 @@ def check_plan(geojson: bytes) -> Plan:
         )
     if plan.walls_m > MOST_WALLS_M:
         raise UserError(
-            f"the plan's walls are {plan.walls_m / 1000.0:.0f} km long: more than "
-            f"{MOST_WALLS_M / 1000.0:.0f} km are in no building"
+            coded(
+                "plan-walls-too-long",
+                "the plan's walls are {walls_m} long: more than {most_m} are in no building",
+                walls_m=Measure(plan.walls_m, f"{plan.walls_m / 1000.0:.0f} km"),
+                most_m=Measure(MOST_WALLS_M, f"{MOST_WALLS_M / 1000.0:.0f} km"),
+            )
         )
     return plan
 

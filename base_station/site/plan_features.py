@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import msgspec
 
+from shared.coded_text import Measure, coded
 from shared.errors import UserError
 
 LEAST_POINTS = 2  # of a line
@@ -120,7 +121,12 @@ def read_feature(number: int, encoded: msgspec.Raw) -> PlanFeature:
         feature = msgspec.json.decode(encoded, type=_Feature)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(
-            f"the plan has a {_what(number, encoded)} that cannot be read: {error}"
+            coded(
+                "plan-feature-unreadable",
+                "the plan has a {feature} that cannot be read: {error}",
+                feature=Measure(number, _what(number, encoded)),
+                error=str(error),
+            )
         ) from error
     properties = feature.properties or _Properties()
     kind = properties.kind if isinstance(properties.kind, str) else ""
@@ -139,8 +145,13 @@ def require_strict(feature: PlanFeature) -> None:
     for ring in _rings(feature.geometry):
         if len(ring) < LEAST_RING_POINTS or ring[0] != ring[-1]:
             raise UserError(
-                f"the plan's {feature.name} has a ring that is not closed: it must have at least "
-                f"{LEAST_RING_POINTS} points, and the last must be the first (RFC 7946)"
+                coded(
+                    "plan-ring-open",
+                    "the plan's {feature} has a ring that is not closed: it must have at least "
+                    "{least} points, and the last must be the first (RFC 7946)",
+                    feature=Measure(feature.number, feature.name),
+                    least=LEAST_RING_POINTS,
+                )
             )
 
 
@@ -152,9 +163,13 @@ def _floor(value: Any, number: int, kind: str) -> int:
     try:
         return 0 if value is None else msgspec.convert(value, Floor)
     except msgspec.ValidationError as error:
-        what = kind or "feature"
         raise UserError(
-            f"the plan has a floor of a {what} (feature {number}) that cannot be read: {error}"
+            coded(
+                "plan-floor-unreadable",
+                "the plan has a floor of a {feature} that cannot be read: {error}",
+                feature=Measure(number, f"{kind or 'feature'} (feature {number})"),
+                error=str(error),
+            )
         ) from error
 
 
@@ -164,12 +179,22 @@ def _require_shape(feature: PlanFeature) -> None:
         shape = "null" if feature.geometry is None else type(feature.geometry).__name__
         shapes = ", ".join(one.__name__ for one in allowed)
         raise UserError(
-            f"the plan's {feature.name} has the geometry {shape}: it must be one of {shapes}"
+            coded(
+                "plan-geometry-unfit",
+                "the plan's {feature} has the geometry {shape}: it must be one of {shapes}",
+                feature=Measure(feature.number, feature.name),
+                shape=shape,
+                shapes=shapes,
+            )
         )
     for parts in _parts(feature.geometry):
         if min(map(len, parts), default=0) < LEAST_POINTS:
             raise UserError(
-                f"the plan's {feature.name} has fewer than two points [east_m, north_m]"
+                coded(
+                    "plan-points-too-few",
+                    "the plan's {feature} has fewer than two points [east_m, north_m]",
+                    feature=Measure(feature.number, feature.name),
+                )
             )
 
 

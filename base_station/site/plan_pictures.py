@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import msgspec
 
 from base_station.site.plan_features import Floor, Metres
+from shared.coded_text import Measure, coded
 from shared.errors import UserError
 
 MOST_BASE64 = 2_000_000  # of all pictures: a plan is in every snapshot that a console gets
@@ -29,18 +30,40 @@ def require_pictures(member: Any) -> None:
     try:
         pictures = msgspec.convert(member, list[FloorPicture])
     except msgspec.ValidationError as error:
-        raise UserError(f"the plan has pictures that cannot be read: {error}") from error
+        raise UserError(
+            coded(
+                "plan-pictures-unreadable",
+                "the plan has pictures that cannot be read: {error}",
+                error=str(error),
+            )
+        ) from error
     twice = [floor for floor, n in Counter(one.floor for one in pictures).items() if n > 1]
     if twice:
-        raise UserError(f"the plan has more than one picture of floor {twice[0]}")
+        raise UserError(
+            coded(
+                "plan-pictures-of-one-floor",
+                "the plan has more than one picture of floor {floor}",
+                floor=twice[0],
+            )
+        )
     if sum(len(one.webp) for one in pictures) > MOST_BASE64:
         raise UserError(
-            f"the plan's pictures have more than {MOST_BASE64 // 1_000_000} MB together; send "
-            "smaller ones, or fewer floors"
+            coded(
+                "plan-pictures-too-large",
+                "the plan's pictures have more than {most_mb} together; send smaller ones, or "
+                "fewer floors",
+                most_mb=Measure(MOST_BASE64 / 1e6, f"{MOST_BASE64 // 1_000_000} MB"),
+            )
         )
     for one in pictures:
         if not _is_webp(one.webp):
-            raise UserError(f"the plan's picture of floor {one.floor} is no WebP in base64")
+            raise UserError(
+                coded(
+                    "plan-picture-no-webp",
+                    "the plan's picture of floor {floor} is no WebP in base64",
+                    floor=one.floor,
+                )
+            )
 
 
 def _is_webp(text: str) -> bool:

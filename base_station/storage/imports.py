@@ -20,8 +20,10 @@ from typing import TypeVar
 import msgspec
 
 from base_station.storage.private_files import write_atomically
+from shared.coded_text import Measure, coded
 from shared.durable_names import sync_folder
 from shared.errors import StoreError
+from shared.file_faults import making_fault, removal_fault
 from shared.own_files import make_folder, read_own, write_own
 
 _PRIVATE = 0o700
@@ -94,8 +96,13 @@ class ImportFolder:
         free_bytes = shutil.disk_usage(self.path).free
         if free_bytes - size_bytes < KEEP_FREE_BYTES:
             raise StoreError(
-                f"the disk has {free_bytes >> 20} MB left, of which the log needs "
-                f"{KEEP_FREE_BYTES >> 20}: the file is not taken; make room first"
+                coded(
+                    "import-disk-full",
+                    "the disk has {free_mb} MB left, of which the log needs {needed_mb}: the file "
+                    "is not taken; make room first",
+                    free_mb=_mebibytes(free_bytes),
+                    needed_mb=_mebibytes(KEEP_FREE_BYTES),
+                )
             )
 
     @contextmanager
@@ -111,7 +118,7 @@ class ImportFolder:
             _remove_left(folder)
             yield path
         except OSError as error:
-            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
+            raise StoreError(_not_kept(error)) from error
         finally:
             path.unlink(missing_ok=True)
 
@@ -138,7 +145,7 @@ class ImportFolder:
             )
         except OSError as error:
             self.remove(incident_id, import_id)
-            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
+            raise StoreError(_not_kept(error)) from error
         except StoreError:
             self.remove(incident_id, import_id)
             raise
@@ -161,7 +168,12 @@ class ImportFolder:
             return None
         except (OSError, msgspec.MsgspecError) as error:
             raise StoreError(
-                f"what was read of an imported file is damaged ({error}); bring the file in again"
+                coded(
+                    "import-damaged",
+                    "what was read of an imported file is damaged ({error}); bring the file in "
+                    "again",
+                    error=str(error),
+                )
             ) from error
 
     def original(self, incident_id: str, import_id: str) -> Path | None:
@@ -199,7 +211,7 @@ class ImportFolder:
             with write_own(folder / own, 0o600) as target:
                 target.writelines(parts)
         except OSError as error:
-            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
+            raise StoreError(_not_kept(error)) from error
 
     def remove(self, incident_id: str, import_id: str) -> None:
         for suffix in (_SUMMARY, _CONTENT, _ORIGINAL):
@@ -215,7 +227,7 @@ class ImportFolder:
         except FileNotFoundError:
             return 0
         except OSError as error:
-            raise StoreError(f"{folder} cannot be removed: {error.strerror or error}") from error
+            raise StoreError(removal_fault(folder, error)) from error
         return len(files)
 
     def files(self) -> Iterator[Path]:
@@ -235,7 +247,19 @@ class ImportFolder:
             make_folder(self.path, _PRIVATE)
             make_folder(folder, _PRIVATE)
         except OSError as error:
-            raise StoreError(f"{folder} cannot be made: {error.strerror or error}") from error
+            raise StoreError(making_fault(folder, error)) from error
+
+
+def _mebibytes(size_bytes: int) -> Measure:
+    return Measure(size_bytes / 1e6, str(size_bytes >> 20))
+
+
+def _not_kept(error: OSError) -> str:
+    return coded(
+        "import-not-kept",
+        "the file cannot be kept: {error}",
+        error=error.strerror or str(error),
+    )
 
 
 def _remove_left(folder: Path) -> None:

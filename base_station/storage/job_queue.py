@@ -11,6 +11,7 @@ from typing import Generic, Protocol, TypeVar
 import msgspec
 
 from base_station.storage.private_files import write_atomically
+from shared.coded_text import coded, text_of_error
 from shared.errors import StoreError
 from shared.worker import Worker
 
@@ -74,7 +75,11 @@ class JobList(Generic[J]):
                     write_atomically(self._path, content)
                 except StoreError as error:
                     raise StoreError(
-                        f"what was asked for cannot be kept, so nothing is done: {error}"
+                        coded(
+                            "job-not-kept",
+                            "what was asked for cannot be kept, so nothing is done: {reason}",
+                            reason=text_of_error(error),
+                        )
                     ) from error
             with self._lock:
                 self._all = wanted

@@ -11,7 +11,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
+from shared.coded_text import coded
 from shared.errors import StoreError
+from shared.file_faults import making_fault, writing_fault
 from shared.own_files import make_folder, make_new_folder, open_own
 
 _FOLDER = 0o700
@@ -25,7 +27,7 @@ def new_folder(folder: Path) -> Iterator[None]:
         make_folder(folder.parent, _FOLDER)
         make_new_folder(folder, _FOLDER)
     except OSError as error:
-        raise StoreError(f"{folder} cannot be made: {error.strerror or error}") from error
+        raise StoreError(making_fault(folder, error)) from error
     with ExitStack() as undo:
         undo.callback(shutil.rmtree, folder, ignore_errors=True)
         yield
@@ -57,7 +59,7 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
         with suppress(OSError):
             for partial in partials.values():
                 partial.unlink(missing_ok=True)
-        raise StoreError(f"{path} cannot be written: {error.strerror or error}") from error
+        raise StoreError(writing_fault(path, error)) from error
 
 
 def _write_new(path: Path, content: bytes) -> None:
@@ -75,7 +77,14 @@ def locked(folder: Path) -> Iterator[None]:
     try:
         lock = open_own(folder / "lock", os.O_RDONLY | os.O_CREAT, _FILE)
     except OSError as error:
-        raise StoreError(f"{folder} cannot be used: {error.strerror or error}") from error
+        raise StoreError(
+            coded(
+                "folder-unusable",
+                "{folder} cannot be used: {error}",
+                folder=str(folder),
+                error=error.strerror or str(error),
+            )
+        ) from error
     try:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield

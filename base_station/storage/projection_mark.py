@@ -6,6 +6,7 @@ from pathlib import Path
 
 from base_station.storage.private_files import write_atomically
 from shared.errors import StoreError
+from shared.file_faults import removal_fault
 from shared.own_files import read_own
 
 
@@ -34,4 +35,4 @@ class ProjectionMark:
         try:
             self._path.unlink(missing_ok=True)
         except OSError as error:
-            raise StoreError(f"{self._path} cannot be removed: {error.strerror}") from error
+            raise StoreError(removal_fault(self._path, error)) from error

@@ -184,7 +184,13 @@ class Recorder:
         with self._news:
             self._ending = True  # behind the records in the queue now
         if not self.flush():
-            raise LogError(f"the log cannot be brought to the disk: {self.problem}")
+            raise LogError(
+                coded(
+                    "log-not-on-disk",
+                    "the log cannot be brought to the disk: {reason}",
+                    reason=self.problem,
+                )
+            )
         return tuple(segment.path for segment in self._segments)
 
     def note_rewritten(self, path: Path) -> None:

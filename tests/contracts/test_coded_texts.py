@@ -21,7 +21,10 @@ PARTS = (
     "unit_faults",
     "coded_reasons",
     "drawing_notes",
-    *(f"refusals_{area}" for area in ("access", "people", "incident", "plan", "past", "station")),
+    *(
+        f"refusals_{area}"
+        for area in ("access", "people", "incident", "plan", "past", "station", "form")
+    ),
 )
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
 _MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)

@@ -14,6 +14,7 @@ from base_station.api.problems import Problem
 from base_station.core.idempotency import audit_entry_prefixes
 from base_station.storage.db.window import Window
 from base_station.views.answer import to_ms
+from shared.coded_text import coded
 
 router = APIRouter(tags=["audit"])
 
@@ -40,7 +41,10 @@ def get_carried_out(key: IdempotencyKey, station: CurrentStation, who: Viewer) -
     """
     entry = station.records.audited(audit_entry_prefixes(who.username, key.strip('"')))
     if entry is None:
-        raise Problem(404, "Nothing was carried out with this Idempotency-Key.")
+        raise Problem(
+            404,
+            coded("nothing-carried-out", "Nothing was carried out with this Idempotency-Key."),
+        )
     return CarriedOut(action=entry.action, t_ms=to_ms(entry.t_ns))
 
 

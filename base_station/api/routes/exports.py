@@ -20,7 +20,7 @@ from base_station.api.forms import Id, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import trails_of
-from base_station.api.services import Services
+from base_station.api.services import Services, audit_given_out
 from base_station.exporters import EXPORTERS, exporter_of
 from base_station.exporters.compression import SUFFIX, gzipped
 from base_station.exporters.incident import incident_tracks
@@ -30,7 +30,7 @@ from base_station.replay.incident_file import IncidentFileSource, incident_file
 from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db.window import Window
 from shared.coded_text import coded, text_of_error
-from shared.errors import StoreError, UserError
+from shared.errors import UserError
 
 router = APIRouter(tags=["exports"])
 
@@ -139,17 +139,7 @@ def _whole(
 
 
 def _audit(station: Services, who: Principal, what: str) -> None:
-    try:
-        station.records.audit(who.username, "Exported", what)
-    except StoreError as error:
-        raise Problem(
-            503,
-            coded(
-                "export-not-audited",
-                "Nothing is given out that the audit cannot say: {reason}.",
-                reason=text_of_error(error),
-            ),
-        ) from error
+    audit_given_out(station, who.username, "Exported", what)
 
 
 def _begun(

@@ -22,6 +22,7 @@ from base_station.api.authentication import (
 from base_station.api.hub import Hub
 from base_station.api.hub_client import Client, PacedClient
 from base_station.api.services import Services, services_of
+from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
 
@@ -158,7 +159,9 @@ async def _check_login(socket: WebSocket, services: Services) -> None:
         async with asyncio.timeout(CHECKED_WITHIN_S):
             principal = await checking
     except TimeoutError:
-        raise StoreError("the station's disk does not answer; check it") from None
+        raise StoreError(
+            coded("disk-does-not-answer", "the station's disk does not answer; check it")
+        ) from None
     if principal is None:
         raise WebSocketClosing(NOT_LOGGED_IN, "log in first")
     if must_change_password(principal, services):

@@ -14,13 +14,14 @@ from base_station.api.forms import MAX_TIME_MS, Id
 from base_station.api.problems import Problem
 from base_station.api.ranged import begins_at_start, ranged_response
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.services import Services
+from base_station.api.services import Services, audit_given_out
 from base_station.radio.radio_log import RadioLog
 from base_station.radio.spans import Span
 from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_MS
-from shared.errors import LogError, StoreError
+from shared.coded_text import coded, text_of_error
+from shared.errors import LogError
 
 router = APIRouter(tags=["radio"])
 
@@ -55,7 +56,7 @@ def list_radio_channels(incident_id: Id, station: CurrentStation, _: Viewer) -> 
     try:
         found = {name: log.spans(name, from_ns, until_ns) for name in log.channels()}
     except LogError as error:
-        raise Problem(503, f"{error}.") from error
+        raise _unreadable(error) from error
     return RadioAnswer(
         from_ms=to_ms(from_ns),
         until_ms=to_ms(until_ns),
@@ -91,7 +92,9 @@ async def radio_audio(
     window = Window(from_ms * NS_PER_MS, (from_ms + length_ms) * NS_PER_MS)
     content = await run_in_threadpool(_audio, station, incident_id, channel, window)
     if begins_at_start(request):
-        await run_in_threadpool(_audit, station, who.username, f"{channel} of {incident_id}")
+        await run_in_threadpool(
+            audit_given_out, station, who.username, "HeardRadio", f"{channel} of {incident_id}"
+        )
     return ranged_response(content, AUDIO, request)
 
 
@@ -99,20 +102,21 @@ def _audio(station: Services, incident_id: str, channel: str, asked: Window) -> 
     window = asked.within(Window(*_incident_span(station, incident_id)))
     log = _log(station)
     if channel not in log.channels():
-        raise Problem(404, "Of this radio channel nothing was recorded.")
+        raise Problem(
+            404, coded("radio-channel-empty", "Of this radio channel nothing was recorded.")
+        )
     if window.from_ns >= window.until_ns:
-        raise Problem(404, "This window is not in the incident: see /incidents/{id}/radio.")
+        raise Problem(
+            404,
+            coded(
+                "radio-window-outside",
+                "This window is not in the incident: see /incidents/{{id}}/radio.",
+            ),
+        )
     try:
         return log.audio(channel, window.from_ns, window.until_ns)
     except LogError as error:
-        raise Problem(503, f"{error}.") from error
-
-
-def _audit(station: Services, by: str, what: str) -> None:
-    try:
-        station.records.audit(by, "HeardRadio", what)
-    except StoreError as error:
-        raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
+        raise _unreadable(error) from error
 
 
 def _incident_span(station: Services, incident_id: str) -> tuple[int, int]:
@@ -122,8 +126,12 @@ def _incident_span(station: Services, incident_id: str) -> tuple[int, int]:
 
 def _log(station: Services) -> RadioLog:
     if station.radio is None:
-        raise Problem(404, "This station has no log.")
+        raise Problem(404, coded("radio-no-log", "This station has no log."))
     return station.radio
+
+
+def _unreadable(error: LogError) -> Problem:
+    return Problem(503, coded("radio-unreadable", "{reason}.", reason=text_of_error(error)))
 
 
 def _span_ms(span: Span) -> tuple[int, int]:

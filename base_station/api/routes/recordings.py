@@ -72,7 +72,13 @@ def stop_recording(fetch_id: Id, station: Station, who: Commander) -> None:
 def _window(station: Services, new: NewPull) -> tuple[int, int]:
     now_ns = station.clock.utc_ns()
     if (new.incident_id is None) == (new.from_ms is None):
-        raise Problem(422, "Say which window: incident_id, or from_ms and perhaps to_ms.")
+        raise Problem(
+            422,
+            coded(
+                "recording-window-unnamed",
+                "Say which window: incident_id, or from_ms and perhaps to_ms.",
+            ),
+        )
     if new.incident_id is not None:
         incident = incident_or_404(station, new.incident_id)
         return incident.opened_ns, incident.closed_ns or now_ns

@@ -47,7 +47,10 @@ async def _json_body(request: Request) -> bytes:
 
 
 _PlanBody = Annotated[bytes, Depends(_json_body)]
-_SEND_JSON = "send one JSON object as the body, with the header Content-Type: application/json"
+_SEND_JSON = coded(
+    "plan-not-sent-as-json",
+    "send one JSON object as the body, with the header Content-Type: application/json",
+)
 _PLAN_CONTENT = {
     media_type: {"schema": {"type": "object", "title": "Plan", "required": ["type", "muster"]}}
     for media_type in ("application/geo+json", "application/json")

@@ -20,6 +20,7 @@ from base_station.storage.db import models
 from base_station.storage.db.records import TrackSample
 from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
 router = APIRouter(tags=["tracks"])
 
@@ -72,7 +73,7 @@ def _encoded(trail: TrailAnswer) -> TrailAnswer:
 
 def hindsight_of(station: Services) -> PostProcessor:
     if station.post_processor is None:
-        raise Problem(503, "This station has no log to work it out from.")
+        raise Problem(503, coded("trails-no-log", "This station has no log to work it out from."))
     return station.post_processor
 
 

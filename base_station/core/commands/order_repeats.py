@@ -9,7 +9,7 @@ from __future__ import annotations
 from base_station.core.state import StationState
 from base_station.core.state.command import Delivery, SentCommand
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import Term, coded
 from shared.errors import UserError
 from shared.messages.station import SendCommand
 
@@ -34,7 +34,13 @@ def send_again(state: StationState, action: SendCommand) -> SentCommand:
         raise UserError(coded("order-over", "this order is over: give a new one"))
     recipients = [one for one in _unanswered(command) if action.unit_id in ("", one.unit_id)]
     if not recipients:
-        raise UserError(f"{action.unit_id or 'everybody'} has acknowledged it, or never had it")
+        raise UserError(
+            coded(
+                "order-answered",
+                "{unit} has acknowledged it, or never had it",
+                unit=action.unit_id or Term("everybody", "everybody"),
+            )
+        )
     command.repeat_ids.append(action.command_id)
     until_ns = max(command.expires_ns, state.t_ns + round(action.lasts_s * NS_PER_S))
     for delivery in recipients:

@@ -32,6 +32,7 @@ from base_station.core.erasure.erasure import (
 )
 from base_station.core.people_actions import PeopleAction, apply_people_action
 from base_station.core.state import Person, StationState
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages import OperatorAction
 from shared.messages.station import Assign, AssignIncident, RegisterUnit, Unassign
@@ -95,9 +96,21 @@ class _IncidentScan:
     def erasure(self) -> Erasure:
         """Raises UserError as ``erasure_of_incident``."""
         if self._opened_ns == FOREVER_NS:
-            raise UserError(f"the log knows no incident {self._incident_id}")
+            raise UserError(
+                coded(
+                    "erase-incident-unknown",
+                    "the log knows no incident {incident}",
+                    incident=self._incident_id,
+                )
+            )
         if self._closed_ns == FOREVER_NS:
-            raise UserError(f"the incident {self._incident_id} is open; close it first")
+            raise UserError(
+                coded(
+                    "erase-incident-open",
+                    "the incident {incident} is open; close it first",
+                    incident=self._incident_id,
+                )
+            )
         self._note_elsewhere({}, self._gone_ns)
         windows = [one for one in self._windows if one.unit_id in self._units]
         return Erasure(

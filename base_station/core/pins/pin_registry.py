@@ -16,7 +16,7 @@ from base_station.core.state.pin import WAITING, Beacon, Pin, reach_std_m
 from base_station.core.state.resolve_queue import request_resolve
 from base_station.site.plan import Plan
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import Measure, coded
 from shared.errors import UserError
 from shared.geo import rotate
 from shared.messages.pins import (
@@ -239,12 +239,23 @@ def _sightings_of(site: SiteState, beacon_id: str) -> list[Pin]:
 
 def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
     if t_ns > state.t_ns + FUTURE_NS:
-        ahead = format_duration((t_ns - state.t_ns) / NS_PER_S)
-        raise UserError(f"the pin's time is {ahead} in the future; say when it was")
+        ahead_s = (t_ns - state.t_ns) / NS_PER_S
+        raise UserError(
+            coded(
+                "pin-in-future",
+                "the pin's time is {ahead_s} in the future; say when it was",
+                ahead_s=Measure(ahead_s, format_duration(ahead_s)),
+            )
+        )
     if early_s := _early_s(state, unit_id, t_ns):
         raise UserError(
-            f"the pin's time is {format_duration(early_s)} before the path of {unit_id} begins; "
-            "there is nothing to pin there"
+            coded(
+                "pin-before-path",
+                "the pin's time is {early_s} before the path of {unit} begins; there is nothing "
+                "to pin there",
+                early_s=Measure(early_s, format_duration(early_s)),
+                unit=unit_id,
+            )
         )
 
 

@@ -49,6 +49,7 @@ from base_station.fusion.smoothing.interface import Smoother
 from base_station.site.plan import Ring
 from base_station.site.plan_reader import PlanReader
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages import GpsFix, Position
@@ -212,7 +213,9 @@ class Positioning:
         """
         kind = fuser_named(name)
         if kind is None:
-            raise UserError(f"this version of Muster has no fuser {name!r}")
+            raise UserError(
+                coded("fuser-unknown", "this version of Muster has no fuser '{fuser}'", fuser=name)
+            )
         state.fuser = name
         self._fusers.use_kind(kind, state)
         return {

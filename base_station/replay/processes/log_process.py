@@ -10,6 +10,7 @@ from base_station.replay.processes import wire
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.missing_segments import KnownSegment
+from shared.coded_text import Measure, coded
 from shared.errors import StoreError
 
 Answer = TypeVar("Answer")
@@ -57,11 +58,19 @@ class LogProcess:
         while timeout_s is None or line.has_message(timeout_s):
             encoded = line.receive()
             if encoded is None:
-                raise StoreError("the process that read the log has ended; ask again")
+                raise StoreError(
+                    coded("log-process-ended", "the process that read the log has ended; ask again")
+                )
             message = read(encoded)
             if isinstance(message, wire.Failure):
                 raise message.error()
             if not isinstance(message, wire.Damage):
                 return message
             self.note_damage(message.what)
-        raise StoreError(f"the log was not read within {timeout_s:.0f} s; ask for a shorter span")
+        raise StoreError(
+            coded(
+                "log-took-too-long",
+                "the log was not read within {longest_s}; ask for a shorter span",
+                longest_s=Measure(timeout_s, f"{timeout_s:.0f} s"),
+            )
+        )

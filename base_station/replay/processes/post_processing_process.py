@@ -21,11 +21,12 @@ from base_station.replay.post_processing import (
     read_report,
 )
 from base_station.replay.processes import wire
-from base_station.replay.processes.server import ReplayProcesses
+from base_station.replay.processes.server import STOPPING, ReplayProcesses
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
 from base_station.storage.missing_segments import KnownSegment
 from shared.clock import Clock
+from shared.coded_text import coded
 from shared.errors import StoreError
 
 MEMORY_MB = 575  # mapped for data; of these 75 are not touched, so that some 500 are resident
@@ -100,7 +101,7 @@ class PostProcessingProcess(PostProcessor):
         job = self._job(incident)  # may wait for an archive
         with self._lock:
             if self._closed:
-                raise StoreError("the station is stopping")
+                raise StoreError(STOPPING)
             self._line = self._place.processes.start(job)
             return self._line
 
@@ -140,10 +141,14 @@ class PostProcessingProcess(PostProcessor):
                 case wire.Failure() as failure:
                     raise failure.error()
         if self._closed:
-            raise StoreError("the station is stopping")
+            raise StoreError(STOPPING)
         raise StoreError(
-            f"what is known afterwards of {incident.incident_id} was not worked out: the process "
-            "that did so has ended; ask again"
+            coded(
+                "trails-process-ended",
+                "what is known afterwards of {incident} was not worked out: the process that did "
+                "so has ended; ask again",
+                incident=incident.incident_id,
+            )
         )
 
     def _made(
@@ -155,7 +160,12 @@ class PostProcessingProcess(PostProcessor):
     ) -> PostProcessingResult:
         report = read_report(made.report)
         if report is None:
-            raise StoreError("another version of the program is at work; start the station again")
+            raise StoreError(
+                coded(
+                    "program-of-two-versions",
+                    "another version of the program is at work; start the station again",
+                )
+            )
         kept = self._cached_trails(incident) if made.is_kept else None
         if kept is not None:
             smoothed, raw = kept.tracks, self._store.raw(incident.incident_id) or {}

@@ -18,7 +18,10 @@ from threading import Lock
 from types import TracebackType
 
 from base_station.replay.processes.wire import FrameChannel, Job
+from shared.coded_text import coded
 from shared.errors import StoreError
+
+STOPPING = coded("station-ends", "the station is stopping")
 
 IDLE_S = 600.0  # after the last use it is ended: its memory may be wanted
 _NUMERICS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -55,7 +58,7 @@ class ReplayProcesses:
         """
         with self._lock:
             if self._closed:
-                raise StoreError("the station is stopping")
+                raise StoreError(STOPPING)
             self._used_s = self._monotonic_s()
             try:
                 ours = self._new_process()
@@ -65,7 +68,9 @@ class ReplayProcesses:
                 try:
                     ours = self._new_process()
                 except OSError as error:
-                    raise StoreError(f"no process can be started: {error}") from error
+                    raise StoreError(
+                        coded("no-process", "no process can be started: {error}", error=str(error))
+                    ) from error
         line = FrameChannel(ours)
         line.send(job)
         return line

@@ -14,7 +14,7 @@ from base_station.replay.timelines.unit_timeline import UnitTimeline
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView
-from shared.coded_text import NO_CODE, TextCode, code_of_text, text_of_error, text_with_code
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_of_error, text_with_code
 from shared.errors import MemoryLimitError, MusterError, StoreError
 
 _LENGTH = struct.Struct("<Q")  # before each message
@@ -260,7 +260,9 @@ class FrameChannel:
             try:
                 self._end.sendall(_LENGTH.pack(len(encoded)) + encoded)
             except OSError as error:
-                raise StoreError(f"the other process has ended: {error}") from error
+                raise StoreError(
+                    coded("process-ended", "the other process has ended: {error}", error=str(error))
+                ) from error
 
     def has_message(self, timeout_s: float) -> bool:
         """A message has come, or the other end is gone; waits for it."""

@@ -12,6 +12,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from shared.coded_text import coded
 from shared.enrolment import Holder, private_key_pem
 from shared.errors import ConfigError
 from shared.tls import DAMAGED, parse_certificate
@@ -57,14 +58,22 @@ def issue(
     """A certificate signed by ``authority``; only a station's stands for ``hosts``."""
     if now < authority.certificate.not_valid_before_utc:
         raise ConfigError(
-            f"this machine's clock is at {now:%Y-%m-%d}, and the authority begins on "
-            f"{authority.certificate.not_valid_before_utc:%Y-%m-%d}: set the clock first"
+            coded(
+                "clock-before-authority",
+                "this machine's clock is at {today}, and the authority begins on {begin}: set the "
+                "clock first",
+                today=f"{now:%Y-%m-%d}",
+                begin=f"{authority.certificate.not_valid_before_utc:%Y-%m-%d}",
+            )
         )
     if now + valid > authority.certificate.not_valid_after_utc:
         raise ConfigError(
-            "the certificate would outlive its authority, which ends on "
-            f"{authority.certificate.not_valid_after_utc:%Y-%m-%d}; ask for fewer days, or make "
-            "a new authority and enrol everyone again"
+            coded(
+                "certificate-outlives-authority",
+                "the certificate would outlive its authority, which ends on {end}; ask for fewer "
+                "days, or make a new authority and enrol everyone again",
+                end=f"{authority.certificate.not_valid_after_utc:%Y-%m-%d}",
+            )
         )
     key = ec.generate_private_key(ec.SECP256R1())
     uses = [ExtendedKeyUsageOID.CLIENT_AUTH]
@@ -92,12 +101,22 @@ def read_issued(certificate_pem: bytes, key_pem: bytes) -> Issued:
     try:
         key = serialization.load_pem_private_key(key_pem, password=None)
     except DAMAGED as error:
-        raise ConfigError("the authority's key is damaged; restore it from its backup") from error
+        raise ConfigError(
+            coded(
+                "authority-key-damaged",
+                "the authority's key is damaged; restore it from its backup",
+            )
+        ) from error
     if (
         not isinstance(key, ec.EllipticCurvePrivateKey)
         or key.public_key() != certificate.public_key()
     ):
-        raise ConfigError("the authority's key does not belong to its certificate")
+        raise ConfigError(
+            coded(
+                "authority-key-of-another",
+                "the authority's key does not belong to its certificate",
+            )
+        )
     return Issued(certificate, key)
 
 
@@ -137,7 +156,11 @@ def _name(common_name: str) -> x509.Name:
         return x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, common_name)])
     except ValueError as error:
         raise ConfigError(
-            f"{common_name!r} does not fit a certificate: take 1 to 64 characters"
+            coded(
+                "certificate-name-unfit",
+                "'{name}' does not fit a certificate: take 1 to 64 characters",
+                name=common_name,
+            )
         ) from error
 
 

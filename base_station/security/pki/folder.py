@@ -23,6 +23,7 @@ from shared.channels import validate_unit_id
 from shared.coded_text import coded
 from shared.enrolment import Enrolment, Holder
 from shared.errors import ConfigError
+from shared.file_faults import reading_fault
 from shared.own_files import refuse_links
 from shared.tls import TlsIdentity, check_identity, validity_problem
 
@@ -253,8 +254,13 @@ class PkiFolder:
             check_identity(identity)
         except ConfigError as error:
             raise ConfigError(
-                f"{self._folder}/station.pem and station.key are of no use ({error}); make new "
-                "ones with `muster pki renew-station`"
+                coded(
+                    "station-certificate-unusable",
+                    "{folder}/station.pem and station.key are of no use ({error}); make new ones "
+                    "with `muster pki renew-station`",
+                    folder=str(self._folder),
+                    error=str(error),
+                )
             ) from error
         return identity
 
@@ -289,8 +295,17 @@ class PkiFolder:
             known = sorted(
                 e.name for e in registry.entries if e.holder is holder and e.revoked is None
             )
-            listed = f"enrolled are {', '.join(known)}" if known else "none is enrolled"
-            raise ConfigError(f"there is no {holder.value} {name} with a certificate; {listed}")
+            raise ConfigError(
+                coded(
+                    "not-enrolled",
+                    "there is no {holder} {name} with a certificate; {enrolled}",
+                    holder=holder.value,
+                    name=name,
+                    enrolled=coded("enrolled-are", "enrolled are {names}", names=", ".join(known))
+                    if known
+                    else coded("enrolled-none", "none is enrolled"),
+                )
+            )
         return current
 
     def _enrol(
@@ -341,9 +356,15 @@ class PkiFolder:
         try:
             return path.read_bytes()
         except FileNotFoundError:
-            raise ConfigError(f"{path} is missing; put it back, or restore a backup") from None
+            raise ConfigError(
+                coded(
+                    "key-file-missing",
+                    "{path} is missing; put it back, or restore a backup",
+                    path=str(path),
+                )
+            ) from None
         except OSError as error:
-            raise ConfigError(f"{path} cannot be read: {error}") from error
+            raise ConfigError(reading_fault(path, error)) from error
 
 
 def _issue_station(

@@ -11,8 +11,10 @@ from cryptography.x509 import Certificate
 
 from base_station.storage.private_files import write_atomically
 from shared.channels import tracker_id
+from shared.coded_text import coded
 from shared.enrolment import Holder
 from shared.errors import ConfigError
+from shared.file_faults import reading_fault
 
 
 class Entry(msgspec.Struct, frozen=True):
@@ -129,14 +131,29 @@ def load_registry(path: Path) -> Registry:
         return msgspec.json.decode(path.read_bytes(), type=Registry)
     except FileNotFoundError:
         if path.parent.exists():
-            problem = f"{path} is missing; restore it from a backup, or move its folder away"
+            problem = coded(
+                "registry-missing",
+                "{path} is missing; restore it from a backup, or move its folder away",
+                path=str(path),
+            )
         else:
-            problem = f"{path.parent} is no certificate authority; make one with `muster pki init`"
+            problem = coded(
+                "authority-missing",
+                "{folder} is no certificate authority; make one with `muster pki init`",
+                folder=str(path.parent),
+            )
         raise ConfigError(problem) from None
     except OSError as error:
-        raise ConfigError(f"{path} cannot be read: {error}") from error
+        raise ConfigError(reading_fault(path, error)) from error
     except msgspec.DecodeError as error:
-        raise ConfigError(f"{path} is damaged ({error}); restore it from a backup") from error
+        raise ConfigError(
+            coded(
+                "registry-damaged",
+                "{path} is damaged ({error}); restore it from a backup",
+                path=str(path),
+                error=str(error),
+            )
+        ) from error
 
 
 def save_registry(path: Path, registry: Registry) -> None:

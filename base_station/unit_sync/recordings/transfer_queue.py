@@ -14,6 +14,7 @@ from base_station.views.wire import RecordingView
 from shared.clock import Clock
 from shared.coded_text import coded
 from shared.errors import MusterError, StoreError, UserError
+from shared.file_faults import making_fault
 from shared.own_files import make_folder
 from shared.worker import UNTIL_WOKEN
 
@@ -69,7 +70,7 @@ class TransferQueue:
         try:
             make_folder(self._folder)
         except OSError as error:
-            raise StoreError(f"{self._folder} cannot be made: {error.strerror}") from error
+            raise StoreError(making_fault(self._folder, error)) from error
         return self._pulls.add(lambda under_way: _new_pull(by, wanted, under_way))
 
     def stop(self, fetch_id: str) -> bool:

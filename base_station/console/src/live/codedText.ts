@@ -17,6 +17,7 @@ const PARTS = [
   "refusal_plan",
   "refusal_past",
   "refusal_station",
+  "refusal_form",
 ] as const satisfies readonly PartName[];
 
 /** The text in the chosen language; the English one where there is no code, as of an earlier version, or one

@@ -9,7 +9,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from base_station.api import forms
-from base_station.api.field_errors import error_sentence
+from base_station.api.field_errors import error_sentence, joined_sentences
 from base_station.api.routes.commands import NewCommand
 from base_station.api.routes.people import PersonForm
 from base_station.api.routes.pins import PinForm, StartForm
@@ -17,6 +17,7 @@ from base_station.api.routes.recordings import NewPull
 from base_station.api.routes.tokens import NewToken
 from base_station.api.routes.units import NewUnit, Reference
 from base_station.api.routes.users import NewUser
+from shared.coded_text import code_of_text
 
 PLACE = {"unit_id": "FF-01", "north_m": 0.0, "east_m": 0.0}
 USER = {"username": "eve", "password": "long enough", "role": "viewer"}
@@ -81,6 +82,24 @@ def test_error_without_own_text_is_passed_on() -> None:
     error = {"loc": ("query", "x"), "type": "odd", "msg": "is {odd}", "ctx": {"odd": 1}}
     assert error_sentence(error) == "x is {odd}"
     assert not re.search("[{}]", error_sentence(error | {"type": "missing"}))
+
+
+def test_faults_of_several_fields_keep_their_codes() -> None:
+    with pytest.raises(ValidationError) as refused:
+        NewUser.model_validate({"username": "", "password": "short", "role": "viewer"})
+    joined = joined_sentences(
+        error_sentence(one | {"loc": ("body", *one["loc"])}) for one in refused.value.errors()
+    )
+    assert joined == (
+        "username is empty; fill it in; password is too short; give 10 characters or more"
+    )
+    code = code_of_text(joined)
+    assert code.code == "faults-joined"
+    assert code.texts["before:"] == code.texts["last:"] == "field-fault"
+    assert code.texts["before:field"] == "username"
+    assert code.texts["before:fault:"] == "field-empty"
+    assert code.texts["last:fault:"] == "field-too-short"
+    assert code.numbers["last:fault:least"] == 10
 
 
 @pytest.mark.parametrize("barred", "\x00\x1b\x7f\x85\x9b\u2028\u2029\u202e\u2066\ufffe\uffff")

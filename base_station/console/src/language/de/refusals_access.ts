@@ -66,4 +66,6 @@ export const refusal_access: Part<"refusal_access"> = {
     "Einen Benutzer {username} gibt es nicht",
   "username-unfit":
     "Ein Benutzername ist eine Zeile mit 1 bis 80 einfachen Zeichen, ohne „/“",
+  "logins-too-many":
+    "Im Moment melden sich zu viele an; versuchen Sie es in einigen Sekunden noch einmal.",
 };

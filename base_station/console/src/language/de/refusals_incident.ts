@@ -148,4 +148,20 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "Dieses Gerät gibt es nicht.",
   "unit-without-position":
     "{unit} hat keine Position: Es wurde keine empfangen.",
+  "incident-not-closed":
+    "Der Einsatz ist nicht abgeschlossen: {alarms, plural, =0 {kein offener Alarm} one {# offener Alarm} other {# offene Alarme}}, {inside, plural, =0 {niemand} one {# Person} other {# Personen}} im Innern.",
+  "rests-already":
+    "{name} macht schon Pause",
+  "works-already":
+    "{name} ist schon im Einsatz",
+  "incident-time-unfit":
+    "Die Zeit bis {what, select, rest {zur nächsten Pause} other {zum nächsten PAR}} liegt zwischen {shortest_s} und {longest_s}",
+  "order-answered":
+    "{unit, select, everybody {Alle haben ihn} other {{unit} hat ihn}} quittiert oder nie erhalten",
+  "pin-in-future":
+    "Die Zeit des Pins liegt {ahead_s} in der Zukunft; geben Sie an, wann es war",
+  "pin-before-path":
+    "Die Zeit des Pins liegt {early_s} vor dem Beginn des Wegs von {unit}; da gibt es nichts festzulegen",
+  "fuser-unknown":
+    "Diese Version von Muster hat kein Ortungsverfahren „{fuser}“",
 };

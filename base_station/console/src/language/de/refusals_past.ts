@@ -116,4 +116,58 @@ export const refusal_past: Part<"refusal_past"> = {
     "Die Station kam nicht rechtzeitig an das, was sie im Speicher hält.",
   "erasure-folder-in-use":
     "{folder} lässt sich nicht löschen; prüfen Sie, wer den Ordner benutzt, und löschen Sie erneut.",
+  "radio-channel-empty":
+    "Von diesem Funkkanal wurde nichts aufgezeichnet.",
+  "radio-window-outside":
+    "Diese Zeit liegt nicht im Einsatz.",
+  "radio-no-log":
+    "Diese Station hat keine Aufzeichnung.",
+  "radio-unreadable":
+    "{reason}.",
+  "radio-file-unreadable":
+    "{path} ist nicht lesbar ({error}): Prüfen Sie die Festplatte",
+  "recording-window-unnamed":
+    "Geben Sie das Zeitfenster an: einen Einsatz, oder einen Beginn und vielleicht ein Ende.",
+  "trails-no-log":
+    "Diese Station hat keine Aufzeichnung, aus der es sich berechnen ließe.",
+  "erase-incident-unknown":
+    "Die Aufzeichnung kennt keinen Einsatz {incident}",
+  "erase-incident-open":
+    "Der Einsatz {incident} ist offen; schließen Sie ihn zuerst ab",
+  "log-process-ended":
+    "Der Prozess, der die Aufzeichnung las, ist beendet; fragen Sie noch einmal",
+  "log-took-too-long":
+    "Die Aufzeichnung war nicht innerhalb von {longest_s} gelesen; fragen Sie nach einem kürzeren Zeitraum",
+  "trails-process-ended":
+    "Was man im Nachhinein von {incident} weiß, wurde nicht berechnet: Der Prozess dafür ist beendet; fragen Sie noch einmal",
+  "incident-file-damaged":
+    "{path} ist als Einsatz von Muster gekennzeichnet, aber nicht als solcher lesbar ({error}): Holen Sie die Datei noch einmal",
+  "erasure-list-unreadable":
+    "{path} nennt, was gerade gelöscht wird, und ist nicht lesbar ({error}): Stellen Sie die Datei aus einer Sicherung wieder her, oder entfernen Sie sie, und löschen Sie noch einmal",
+  "export-format-unknown":
+    "Ein Format „{format}“ gibt es nicht; Formate sind {known}",
+  "parquet-library-missing":
+    "Die Bibliothek pyarrow, die Parquet schreibt, ist nicht installiert: pip install --require-hashes -r deploy/requirements-parquet.lock",
+  "export-selection-unknown":
+    "„{name}“ ist weder Gerät noch Person noch Trupp mit einem Weg in diesem Einsatz; es gibt {known, select, none {keine} other {{known}}}",
+  "import-another-time":
+    "Die Datei reicht von {first_utc_s} bis {last_utc_s}, der Einsatz aber von {from_utc_s} bis {until_utc_s}: Wählen Sie einen anderen Einsatz; oder geben Sie, wenn die Uhr falsch ging (um etwa {off_h, number} h), die Sekunden an, die zu addieren sind",
+  "import-other-shift":
+    "{file} ist schon in diesem Einsatz, mit {shift, number} s auf den Zeiten: Nehmen Sie die Datei zuerst heraus, und bringen Sie sie dann neu ein",
+  "import-file-unreadable":
+    "Die Datei ist nicht lesbar: {error}",
+  "photo-import-place-unfit":
+    "Der Ort in den Exif-Daten des Fotos ist keiner: {lat_deg}, {lon_deg}",
+  "photo-import-no-zone":
+    "Das Foto ist von {taken} nach einer Uhr, deren Zeitzone es nicht nennt: Geben Sie deren Stunden vor UTC an, etwa 2 für die mitteleuropäische Sommerzeit",
+  "import-too-deep":
+    "Das ist keine Datei mit Wegen: Ihre Elemente liegen {deepest} tief",
+  "import-has-entities":
+    "Die Datei hat Entitäten oder einen Dokumenttyp, die kein Weg braucht und die den Speicher füllen können: Sie wird nicht gelesen",
+  "import-disk-full":
+    "Auf der Festplatte sind noch {free_mb} frei, davon braucht die Aufzeichnung {needed_mb}: Die Datei wird nicht angenommen; schaffen Sie zuerst Platz",
+  "import-not-kept":
+    "Die Datei lässt sich nicht speichern: {error}",
+  "import-damaged":
+    "Was aus einer eingebrachten Datei gelesen wurde, ist beschädigt ({error}); bringen Sie die Datei noch einmal ein",
 };

@@ -50,4 +50,30 @@ export const refusal_people: Part<"refusal_people"> = {
     "Ein registriertes Gerät {unit} gibt es nicht.",
   "unit-not-registered":
     "Ein registriertes Gerät „{unit}“ gibt es nicht; registrieren Sie es zuerst",
+  "clock-before-authority":
+    "Die Uhr dieses Rechners steht auf {today}, und die Zertifizierungsstelle beginnt am {begin}: Stellen Sie zuerst die Uhr",
+  "certificate-outlives-authority":
+    "Das Zertifikat würde länger gelten als seine Zertifizierungsstelle, die am {end} endet; nehmen Sie weniger Tage, oder erstellen Sie eine neue Zertifizierungsstelle, und melden Sie alle neu an",
+  "authority-key-of-another":
+    "Der Schlüssel der Zertifizierungsstelle gehört nicht zu ihrem Zertifikat",
+  "authority-key-damaged":
+    "Der Schlüssel der Zertifizierungsstelle ist beschädigt; stellen Sie ihn aus der Sicherung wieder her",
+  "certificate-name-unfit":
+    "„{name}“ passt nicht in ein Zertifikat: Nehmen Sie 1 bis 64 Zeichen",
+  "not-enrolled":
+    "Es gibt kein Zertifikat für {holder} {name}; {enrolled}",
+  "enrolled-are":
+    "angemeldet sind {names}",
+  "enrolled-none":
+    "niemand ist angemeldet",
+  "key-file-missing":
+    "{path} fehlt; legen Sie die Datei zurück, oder stellen Sie eine Sicherung wieder her",
+  "registry-damaged":
+    "{path} ist beschädigt ({error}); stellen Sie die Datei aus einer Sicherung wieder her",
+  "registry-missing":
+    "{path} fehlt; stellen Sie die Datei aus einer Sicherung wieder her, oder verschieben Sie den Ordner",
+  "authority-missing":
+    "{folder} ist keine Zertifizierungsstelle; erstellen Sie eine mit „muster pki init“",
+  "station-certificate-unusable":
+    "{folder}/station.pem und station.key sind nicht brauchbar ({error}); erstellen Sie neue mit „muster pki renew-station“",
 };

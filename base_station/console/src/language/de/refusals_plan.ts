@@ -104,4 +104,36 @@ export const refusal_plan: Part<"refusal_plan"> = {
     "Diese ZIP-Datei ist kein IMDF: Sie hat kein level.geojson",
   "zip-unreadable":
     "Diese ZIP-Datei ist nicht lesbar: {error}",
+  "plan-not-sent-as-json":
+    "Senden Sie ein JSON-Objekt als Inhalt, mit dem Kopf Content-Type: application/json",
+  "ifc-zip-too-large":
+    "Das IFC in dieser ZIP-Datei ist größer als {most_mb}; exportieren Sie nur Wände, Türen, Treppen und Räume",
+  "ifc-zip-unreadable":
+    "Diese ZIP-Datei ist nicht lesbar: {error}",
+  "picture-too-large":
+    "Das Bild hat mehr als {most_million} Millionen Pixel; verkleinern Sie es",
+  "drawing-size-unfit":
+    "Die Zeichnung ist {wide_m} breit: Wählen Sie eine andere Längeneinheit, oder senden Sie ein einzelnes Gebäude",
+  "map-size-unfit":
+    "Das Bild wäre {wide_m} mal {high_m} groß; sinnvoll sind {smallest_m} bis {largest_m}",
+  "plan-walls-too-long":
+    "Die Wände des Plans sind {walls_m} lang: Mehr als {most_m} hat kein Gebäude",
+  "plan-feature-unreadable":
+    "Das Objekt {feature} des Plans ist nicht lesbar: {error}",
+  "plan-ring-open":
+    "Das Objekt {feature} des Plans hat einen Ring, der nicht geschlossen ist: Er braucht mindestens {least} Punkte, und der letzte muss der erste sein (RFC 7946)",
+  "plan-floor-unreadable":
+    "Das Geschoss des Objekts {feature} des Plans ist nicht lesbar: {error}",
+  "plan-geometry-unfit":
+    "Das Objekt {feature} des Plans hat die Geometrie {shape}: Sie muss eine von diesen sein: {shapes}",
+  "plan-points-too-few":
+    "Das Objekt {feature} des Plans hat weniger als zwei Punkte [east_m, north_m]",
+  "plan-pictures-unreadable":
+    "Der Plan hat Bilder, die nicht lesbar sind: {error}",
+  "plan-pictures-of-one-floor":
+    "Der Plan hat mehr als ein Bild von Geschoss {floor}",
+  "plan-pictures-too-large":
+    "Die Bilder des Plans haben zusammen mehr als {most_mb}; senden Sie kleinere oder weniger Geschosse",
+  "plan-picture-no-webp":
+    "Das Bild des Plans von Geschoss {floor} ist kein WebP in base64",
 };

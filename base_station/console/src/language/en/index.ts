@@ -23,6 +23,7 @@ export * from "./plan_tools";
 export * from "./problems";
 export * from "./radio_audio";
 export * from "./refusals_access";
+export * from "./refusals_form";
 export * from "./refusals_incident";
 export * from "./refusals_past";
 export * from "./refusals_people";

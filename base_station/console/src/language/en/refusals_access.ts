@@ -64,4 +64,6 @@ export const refusal_access = {
     "there is no user “{username}”",
   "username-unfit":
     "a user’s name is one line of 1 to 80 plain characters, without ’/’",
+  "logins-too-many":
+    "Too many people log in at the moment; try again in a few seconds.",
 };

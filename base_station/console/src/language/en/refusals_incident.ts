@@ -146,4 +146,20 @@ export const refusal_incident = {
     "There is no such unit.",
   "unit-without-position":
     "{unit} has no position: none was received.",
+  "incident-not-closed":
+    "The incident is not closed: {alarms, plural, =0 {no open alarm} one {# open alarm} other {# open alarms}}, {inside, plural, =0 {nobody} one {# person} other {# people}} inside.",
+  "rests-already":
+    "{name} is resting already",
+  "works-already":
+    "{name} is at work already",
+  "incident-time-unfit":
+    "the time until the next {what, select, rest {rest} other {roll call}} is {shortest_s} to {longest_s}",
+  "order-answered":
+    "{unit, select, everybody {everybody} other {{unit}}} has acknowledged it, or never had it",
+  "pin-in-future":
+    "the pin’s time is {ahead_s} in the future; say when it was",
+  "pin-before-path":
+    "the pin’s time is {early_s} before the path of {unit} begins; there is nothing to pin there",
+  "fuser-unknown":
+    "this version of Muster has no fuser “{fuser}”",
 };

@@ -114,4 +114,58 @@ export const refusal_past = {
     "The station did not get to what it holds in memory.",
   "erasure-folder-in-use":
     "{folder} cannot be removed; see who uses it, and forget again.",
+  "radio-channel-empty":
+    "Of this radio channel nothing was recorded.",
+  "radio-window-outside":
+    "This time is not in the incident.",
+  "radio-no-log":
+    "This station has no log.",
+  "radio-unreadable":
+    "{reason}.",
+  "radio-file-unreadable":
+    "{path} cannot be read ({error}): check the disk",
+  "recording-window-unnamed":
+    "Say which window: an incident, or a begin and perhaps an end.",
+  "trails-no-log":
+    "This station has no log to work it out from.",
+  "erase-incident-unknown":
+    "the log knows no incident {incident}",
+  "erase-incident-open":
+    "the incident {incident} is open; close it first",
+  "log-process-ended":
+    "the process that read the log has ended; ask again",
+  "log-took-too-long":
+    "the log was not read within {longest_s}; ask for a shorter span",
+  "trails-process-ended":
+    "what is known afterwards of {incident} was not worked out: the process that did so has ended; ask again",
+  "incident-file-damaged":
+    "{path} is marked as an incident of Muster, and cannot be read as one ({error}): get it once more",
+  "erasure-list-unreadable":
+    "{path} tells what is being forgotten and cannot be read ({error}): restore it from a backup, or remove it and forget again",
+  "export-format-unknown":
+    "there is no format “{format}”; formats are {known}",
+  "parquet-library-missing":
+    "the library pyarrow, which writes Parquet, is not installed: pip install --require-hashes -r deploy/requirements-parquet.lock",
+  "export-selection-unknown":
+    "“{name}” is no unit, person or crew with a track in this incident; there are {known, select, none {none} other {{known}}}",
+  "import-another-time":
+    "it is of {first_utc_s} to {last_utc_s}, and the incident was from {from_utc_s} to {until_utc_s}: choose another incident; or, where the clock that made it was off (by about {off_h, number} h), give the seconds to add",
+  "import-other-shift":
+    "{file} is in this incident already, with {shift, number} s added to its times: take it out first, then bring it in anew",
+  "import-file-unreadable":
+    "the file cannot be read: {error}",
+  "photo-import-place-unfit":
+    "the place in its Exif data is none: {lat_deg}, {lon_deg}",
+  "photo-import-no-zone":
+    "it was taken at {taken} by a clock whose time zone it does not state: give the hours of that before UTC, for example 2 for Central European Summer Time",
+  "import-too-deep":
+    "it is no file of tracks: its elements lie {deepest} deep",
+  "import-has-entities":
+    "it has entities or a document type, which no track needs and which can fill the memory: it is not read",
+  "import-disk-full":
+    "the disk has {free_mb} left, of which the log needs {needed_mb}: the file is not taken; make room first",
+  "import-not-kept":
+    "the file cannot be kept: {error}",
+  "import-damaged":
+    "what was read of an imported file is damaged ({error}); bring the file in again",
 };

@@ -48,4 +48,30 @@ export const refusal_people = {
     "There is no registered unit {unit}.",
   "unit-not-registered":
     "no registered unit “{unit}”; register it first",
+  "clock-before-authority":
+    "this machine’s clock is at {today}, and the authority begins on {begin}: set the clock first",
+  "certificate-outlives-authority":
+    "the certificate would outlive its authority, which ends on {end}; ask for fewer days, or make a new authority and enrol everyone again",
+  "authority-key-of-another":
+    "the authority’s key does not belong to its certificate",
+  "authority-key-damaged":
+    "the authority’s key is damaged; restore it from its backup",
+  "certificate-name-unfit":
+    "“{name}” does not fit a certificate: take 1 to 64 characters",
+  "not-enrolled":
+    "there is no {holder} {name} with a certificate; {enrolled}",
+  "enrolled-are":
+    "enrolled are {names}",
+  "enrolled-none":
+    "none is enrolled",
+  "key-file-missing":
+    "{path} is missing; put it back, or restore a backup",
+  "registry-damaged":
+    "{path} is damaged ({error}); restore it from a backup",
+  "registry-missing":
+    "{path} is missing; restore it from a backup, or move its folder away",
+  "authority-missing":
+    "{folder} is no certificate authority; make one with “muster pki init”",
+  "station-certificate-unusable":
+    "{folder}/station.pem and station.key are of no use ({error}); make new ones with “muster pki renew-station”",
 };

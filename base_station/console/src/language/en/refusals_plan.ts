@@ -102,4 +102,36 @@ export const refusal_plan = {
     "this ZIP file is no IMDF: it has no level.geojson",
   "zip-unreadable":
     "this ZIP file cannot be read: {error}",
+  "plan-not-sent-as-json":
+    "send one JSON object as the body, with the header Content-Type: application/json",
+  "ifc-zip-too-large":
+    "the IFC in this ZIP file is larger than {most_mb}; export walls, doors, stairs and spaces only",
+  "ifc-zip-unreadable":
+    "this ZIP file cannot be read: {error}",
+  "picture-too-large":
+    "the picture has more than {most_million} million pixels; make it smaller",
+  "drawing-size-unfit":
+    "the drawing is {wide_m} wide: choose another unit of length, or send one building",
+  "map-size-unfit":
+    "the picture would be {wide_m} by {high_m} large; from {smallest_m} to {largest_m} make sense",
+  "plan-walls-too-long":
+    "the plan’s walls are {walls_m} long: more than {most_m} are in no building",
+  "plan-feature-unreadable":
+    "the plan’s feature {feature} cannot be read: {error}",
+  "plan-ring-open":
+    "the plan’s feature {feature} has a ring that is not closed: it must have at least {least} points, and the last must be the first (RFC 7946)",
+  "plan-floor-unreadable":
+    "the floor of the plan’s feature {feature} cannot be read: {error}",
+  "plan-geometry-unfit":
+    "the plan’s feature {feature} has the geometry {shape}: it must be one of {shapes}",
+  "plan-points-too-few":
+    "the plan’s feature {feature} has fewer than two points [east_m, north_m]",
+  "plan-pictures-unreadable":
+    "the plan has pictures that cannot be read: {error}",
+  "plan-pictures-of-one-floor":
+    "the plan has more than one picture of floor {floor}",
+  "plan-pictures-too-large":
+    "the plan’s pictures have more than {most_mb} together; send smaller ones, or fewer floors",
+  "plan-picture-no-webp":
+    "the plan’s picture of floor {floor} is no WebP in base64",
 };

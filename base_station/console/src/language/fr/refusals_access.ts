@@ -66,4 +66,6 @@ export const refusal_access: Part<"refusal_access"> = {
     "Il n’y a pas d’utilisateur {username}",
   "username-unfit":
     "Un nom d’utilisateur est une ligne de 1 à 80 caractères simples, sans «\u00a0/\u00a0»",
+  "logins-too-many":
+    "Trop de personnes se connectent en ce moment\u00a0; réessayez dans quelques secondes.",
 };

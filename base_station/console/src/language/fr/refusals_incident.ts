@@ -148,4 +148,20 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "Ce boîtier n’existe pas.",
   "unit-without-position":
     "{unit} n’a pas de position\u00a0: aucune n’a été reçue.",
+  "incident-not-closed":
+    "L’intervention n’est pas clôturée\u00a0: {alarms, plural, =0 {aucune alarme ouverte} one {# alarme ouverte} other {# alarmes ouvertes}}, {inside, plural, =0 {personne} one {# personne} other {# personnes}} à l’intérieur.",
+  "rests-already":
+    "{name} est déjà au repos",
+  "works-already":
+    "{name} est déjà au travail",
+  "incident-time-unfit":
+    "Le temps jusqu’au prochain {what, select, rest {repos} other {PAR}} est de {shortest_s} à {longest_s}",
+  "order-answered":
+    "{unit, select, everybody {Tous l’ont acquitté, ou ne l’ont} other {{unit} l’a acquitté, ou ne l’a}} jamais reçu",
+  "pin-in-future":
+    "L’heure du repère est de {ahead_s} dans le futur\u00a0; indiquez quand c’était",
+  "pin-before-path":
+    "L’heure du repère précède de {early_s} le début du parcours de {unit}\u00a0; il n’y a rien à repérer là",
+  "fuser-unknown":
+    "Cette version de Muster n’a pas de méthode de localisation «\u00a0{fuser}\u00a0»",
 };

@@ -116,4 +116,58 @@ export const refusal_past: Part<"refusal_past"> = {
     "La station n'a pas atteint à temps ce qu'elle tient en mémoire.",
   "erasure-folder-in-use":
     "{folder} ne peut pas être supprimé ; voyez qui l'utilise, puis effacez de nouveau.",
+  "radio-channel-empty":
+    "De ce canal radio, rien n’a été enregistré.",
+  "radio-window-outside":
+    "Ce moment n’est pas dans l’intervention.",
+  "radio-no-log":
+    "Cette station n’a pas de journal.",
+  "radio-unreadable":
+    "{reason}.",
+  "radio-file-unreadable":
+    "{path} est illisible ({error})\u00a0: vérifiez le disque",
+  "recording-window-unnamed":
+    "Indiquez la période\u00a0: une intervention, ou un début et peut-être une fin.",
+  "trails-no-log":
+    "Cette station n’a pas de journal pour le calculer.",
+  "erase-incident-unknown":
+    "Le journal ne connaît pas d’intervention {incident}",
+  "erase-incident-open":
+    "L’intervention {incident} est en cours\u00a0; clôturez-la d’abord",
+  "log-process-ended":
+    "Le processus qui lisait le journal est terminé\u00a0; redemandez",
+  "log-took-too-long":
+    "Le journal n’a pas été lu en {longest_s}\u00a0; demandez une période plus courte",
+  "trails-process-ended":
+    "Ce que l’on sait après coup de {incident} n’a pas été calculé\u00a0: le processus qui le faisait est terminé\u00a0; redemandez",
+  "incident-file-damaged":
+    "{path} est marqué comme intervention de Muster, mais illisible comme telle ({error})\u00a0: récupérez-le encore une fois",
+  "erasure-list-unreadable":
+    "{path} indique ce qui est en cours d’effacement et est illisible ({error})\u00a0: restaurez-le d’une sauvegarde, ou supprimez-le et effacez de nouveau",
+  "export-format-unknown":
+    "Il n’y a pas de format «\u00a0{format}\u00a0»\u00a0; les formats sont {known}",
+  "parquet-library-missing":
+    "La bibliothèque pyarrow, qui écrit le Parquet, n’est pas installée\u00a0: pip install --require-hashes -r deploy/requirements-parquet.lock",
+  "export-selection-unknown":
+    "«\u00a0{name}\u00a0» n’est ni un boîtier, ni une personne, ni une équipe avec une trace dans cette intervention\u00a0; il y a {known, select, none {aucune trace} other {{known}}}",
+  "import-another-time":
+    "Le fichier va du {first_utc_s} au {last_utc_s}, et l’intervention du {from_utc_s} au {until_utc_s}\u00a0: choisissez une autre intervention\u00a0; ou, si l’horloge était décalée (d’environ {off_h, number} h), indiquez les secondes à ajouter",
+  "import-other-shift":
+    "{file} est déjà dans cette intervention, avec {shift, number} s ajoutées à ses heures\u00a0: retirez-le d’abord, puis versez-le de nouveau",
+  "import-file-unreadable":
+    "Le fichier est illisible\u00a0: {error}",
+  "photo-import-place-unfit":
+    "Le lieu dans les données Exif de la photo n’en est pas un\u00a0: {lat_deg}, {lon_deg}",
+  "photo-import-no-zone":
+    "La photo date du {taken} selon une horloge dont elle n’indique pas le fuseau\u00a0: donnez ses heures d’avance sur UTC, par exemple 2 pour l’heure d’été d’Europe centrale",
+  "import-too-deep":
+    "Ce n’est pas un fichier de traces\u00a0: ses éléments ont une profondeur de {deepest}",
+  "import-has-entities":
+    "Le fichier a des entités ou un type de document, dont aucune trace n’a besoin et qui peuvent remplir la mémoire\u00a0: il n’est pas lu",
+  "import-disk-full":
+    "Il reste {free_mb} sur le disque, dont le journal a besoin de {needed_mb}\u00a0: le fichier n’est pas pris\u00a0; faites d’abord de la place",
+  "import-not-kept":
+    "Le fichier ne peut pas être conservé\u00a0: {error}",
+  "import-damaged":
+    "Ce qui a été lu d’un fichier versé est endommagé ({error})\u00a0; versez le fichier de nouveau",
 };

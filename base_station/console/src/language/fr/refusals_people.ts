@@ -50,4 +50,30 @@ export const refusal_people: Part<"refusal_people"> = {
     "Il n’y a pas de boîtier enregistré {unit}.",
   "unit-not-registered":
     "Il n’y a pas de boîtier enregistré «\u00a0{unit}\u00a0»\u00a0; enregistrez-le d’abord",
+  "clock-before-authority":
+    "L’horloge de cette machine est au {today}, et l’autorité commence le {begin}\u00a0: réglez d’abord l’horloge",
+  "certificate-outlives-authority":
+    "Le certificat durerait plus que son autorité, qui finit le {end}\u00a0; demandez moins de jours, ou créez une nouvelle autorité et enrôlez de nouveau tout le monde",
+  "authority-key-of-another":
+    "La clé de l’autorité ne correspond pas à son certificat",
+  "authority-key-damaged":
+    "La clé de l’autorité est endommagée\u00a0; restaurez-la de sa sauvegarde",
+  "certificate-name-unfit":
+    "«\u00a0{name}\u00a0» ne convient pas à un certificat\u00a0: prenez de 1 à 64 caractères",
+  "not-enrolled":
+    "Il n’y a pas de certificat pour {holder} {name}\u00a0; {enrolled}",
+  "enrolled-are":
+    "sont enrôlés {names}",
+  "enrolled-none":
+    "personne n’est enrôlé",
+  "key-file-missing":
+    "{path} manque\u00a0; remettez-le, ou restaurez une sauvegarde",
+  "registry-damaged":
+    "{path} est endommagé ({error})\u00a0; restaurez-le d’une sauvegarde",
+  "registry-missing":
+    "{path} manque\u00a0; restaurez-le d’une sauvegarde, ou déplacez son dossier",
+  "authority-missing":
+    "{folder} n’est pas une autorité de certification\u00a0; créez-en une avec «\u00a0muster pki init\u00a0»",
+  "station-certificate-unusable":
+    "{folder}/station.pem et station.key sont inutilisables ({error})\u00a0; créez-en de nouveaux avec «\u00a0muster pki renew-station\u00a0»",
 };

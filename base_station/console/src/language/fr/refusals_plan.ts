@@ -104,4 +104,36 @@ export const refusal_plan: Part<"refusal_plan"> = {
     "Ce fichier ZIP n’est pas de l’IMDF\u00a0: il n’a pas de level.geojson",
   "zip-unreadable":
     "Ce fichier ZIP est illisible\u00a0: {error}",
+  "plan-not-sent-as-json":
+    "Envoyez un objet JSON comme contenu, avec l’en-tête Content-Type: application/json",
+  "ifc-zip-too-large":
+    "L’IFC de ce fichier ZIP dépasse {most_mb}\u00a0; exportez seulement murs, portes, escaliers et locaux",
+  "ifc-zip-unreadable":
+    "Ce fichier ZIP est illisible\u00a0: {error}",
+  "picture-too-large":
+    "L’image a plus de {most_million} millions de pixels\u00a0; réduisez-la",
+  "drawing-size-unfit":
+    "Le dessin a une largeur de {wide_m}\u00a0: choisissez une autre unité de longueur, ou envoyez un seul bâtiment",
+  "map-size-unfit":
+    "L’image mesurerait {wide_m} sur {high_m}\u00a0; de {smallest_m} à {largest_m} sont plausibles",
+  "plan-walls-too-long":
+    "Les murs du plan ont une longueur de {walls_m}\u00a0: aucun bâtiment n’en a plus de {most_m}",
+  "plan-feature-unreadable":
+    "L’objet {feature} du plan est illisible\u00a0: {error}",
+  "plan-ring-open":
+    "L’objet {feature} du plan a un anneau qui n’est pas fermé\u00a0: il lui faut au moins {least} points, et le dernier doit être le premier (RFC 7946)",
+  "plan-floor-unreadable":
+    "L’étage de l’objet {feature} du plan est illisible\u00a0: {error}",
+  "plan-geometry-unfit":
+    "L’objet {feature} du plan a la géométrie {shape}\u00a0: elle doit être l’une de {shapes}",
+  "plan-points-too-few":
+    "L’objet {feature} du plan a moins de deux points [east_m, north_m]",
+  "plan-pictures-unreadable":
+    "Le plan a des images illisibles\u00a0: {error}",
+  "plan-pictures-of-one-floor":
+    "Le plan a plus d’une image de l’étage {floor}",
+  "plan-pictures-too-large":
+    "Les images du plan dépassent ensemble {most_mb}\u00a0; envoyez-en de plus petites, ou moins d’étages",
+  "plan-picture-no-webp":
+    "L’image du plan de l’étage {floor} n’est pas du WebP en base64",
 };
