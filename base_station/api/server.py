@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import uvicorn
+from fastapi import FastAPI
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from base_station.api.connections import ConnectionLimitedSocket
 from base_station.api.shared_deflate import WebSocketProtocol
+from base_station.config import HttpConfig
 from base_station.process import gc_tuning
 from base_station.process.log_rate_limit import RateLimitFilter
 from shared.clock import SystemClock
@@ -252,3 +254,20 @@ def bind(host: str, port: int) -> socket.socket:
         raise ConfigError(f"the console cannot listen on {host}:{port}: {error}") from error
     bound.setblocking(False)
     return bound
+
+
+def console_server(
+    app: FastAPI,
+    listening: socket.socket,
+    http: HttpConfig,
+    on_stop: Callable[[], None] = lambda: None,
+) -> ConsoleServer:
+    """Server of a console with its settings; addresses of logged-in users have more connections."""
+    return ConsoleServer(
+        app,
+        listening,
+        http.certificate,
+        http.private_key,
+        on_stop=on_stop,
+        is_known=app.state.known_networks.__contains__,
+    )

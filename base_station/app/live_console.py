@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable
 
 from base_station.api.app import create_app
 from base_station.api.replays import Replays
-from base_station.api.server import ConsoleServer
+from base_station.api.server import ConsoleServer, console_server
 from base_station.api.services import Services
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
@@ -75,14 +75,7 @@ def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]
     """Server of consoles and API; ``on_stop`` is called as it begins to stop."""
     hub, http = parts.resources.hub, parts.resources.config.http
     app = create_app(services, started=lambda loop: hub.connect(loop, parts.engine))
-    return ConsoleServer(
-        app,
-        parts.resources.listening,
-        http.certificate,
-        http.private_key,
-        on_stop=on_stop,
-        is_known=app.state.known_networks.__contains__,
-    )
+    return console_server(app, parts.resources.listening, http, on_stop)
 
 
 def _log_process(parts: LiveParts) -> LogProcess:

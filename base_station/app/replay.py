@@ -10,7 +10,7 @@ from functools import partial
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
-from base_station.api.server import ConsoleServer, bind, serve_until_stopped
+from base_station.api.server import bind, console_server, serve_until_stopped
 from base_station.api.services import Services
 from base_station.app.archive_sources import open_archived_log
 from base_station.app.factories import (
@@ -18,10 +18,11 @@ from base_station.app.factories import (
     replay_starter,
 )
 from base_station.app.first_login import add_own_login
-from base_station.app.offline_log import named_incident, open_offline_log
+from base_station.app.offline_log import OfflineLog, named_incident, open_offline_log
 from base_station.archive.store import open_store
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
+from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
 from base_station.replay.timelines.unit_timeline import read_timeline
@@ -62,7 +63,6 @@ def run_replay_station(
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
         if archive is not None:
             offline_log = open_archived_log(open_store(archive), incident_id, closing, announce)
-            data = offline_log.folder.path  # radio audio is not in the archive
         else:
             incident_id, data = named_incident(incident_id, config.data)
             offline_log = open_offline_log(
@@ -75,46 +75,53 @@ def run_replay_station(
                 decides_again=recompute,
             )
         folder, store = offline_log.folder, offline_log.store
-        accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
-        incident = records.require_incident(incident_id)
-        username, password = add_own_login(accounts)
+        incident = Records(store, clock).require_incident(incident_id)
+        username, password = add_own_login(Accounts(store, clock))
         announce(f"login for this replay: {username}  password: {password}")
 
         past = offline_log.archive(recompute=recompute)
         replays = Replays(replay_starter(past, roster, clock, folder.recorded_until_ns))
-        services = Services(
-            accounts=accounts,
-            roster=roster,
-            records=records,
-            base_maps=BaseMaps(store),
-            hub=hub,
-            gate=ReadOnlyGate(),
-            projection=FinishedTables(),
-            replays=replays,
-            erasures=None,
-            clock=clock,
-            secure=config.http.certificate is not None,
-            is_replay_only=True,
-            post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
-            read_timeline=partial(read_timeline, records, offline_log.log),
-            log_of=lambda _: offline_log.log,
-            radio=offline_log.radio,
-            alarm_explainer=AlarmExplainer(records, offline_log.log.records),
-            archived=ArchivedCopies(store),
-            imports=ImportCatalogue(store, offline_log.imports),
-        )
+        services = _services(config, offline_log, past, roster, replays, hub)
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))
         )
-        server = ConsoleServer(
-            app,
-            listening,
-            config.http.certificate,
-            config.http.private_key,
-            is_known=app.state.known_networks.__contains__,
-        )
+        server = console_server(app, listening, config.http)
         asyncio.run(serve_until_stopped(server, announce))
+
+
+def _services(
+    config: StationConfig,
+    offline_log: OfflineLog,
+    past: Archive,
+    roster: Roster,
+    replays: Replays,
+    hub: Hub,
+) -> Services:
+    """Services of a console that shows one closed incident."""
+    clock, store = SystemClock(), offline_log.store
+    records = Records(store, clock)
+    return Services(
+        accounts=Accounts(store, clock),
+        roster=roster,
+        records=records,
+        base_maps=BaseMaps(store),
+        hub=hub,
+        gate=ReadOnlyGate(),
+        projection=FinishedTables(),
+        replays=replays,
+        erasures=None,
+        clock=clock,
+        secure=config.http.certificate is not None,
+        is_replay_only=True,
+        post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
+        read_timeline=partial(read_timeline, records, offline_log.log),
+        log_of=lambda _: offline_log.log,
+        radio=offline_log.radio,
+        alarm_explainer=AlarmExplainer(records, offline_log.log.records),
+        archived=ArchivedCopies(store),
+        imports=ImportCatalogue(store, offline_log.imports),
+    )
 
 
 def _ignore(_: object) -> None:

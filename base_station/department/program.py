@@ -7,9 +7,10 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 
-from base_station.api.server import ConsoleServer, bind, serve_until_stopped
+from base_station.api.server import bind, console_server, serve_until_stopped
 from base_station.app.console_presence import ConsolePresence
 from base_station.app.factories import announce_first_login
+from base_station.app.health_facts import ReportsProblems
 from base_station.config import host_and_port
 from base_station.department.api import DepartmentServices, create_department_app
 from base_station.department.archive_replays import ArchiveReplays
@@ -65,16 +66,11 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
         bus = ZenohBus(router.endpoint)
         closing.callback(bus.close)
         intake.open(bus, closing)
-        expiry = ExpiryWatch(pki, clock)
-        presence = closing.enter_context(ConsolePresence(config.http))
-
-        def problems() -> Iterator[str]:
-            yield from config.configuration_problems()
-            if store.problem:
-                yield store.problem
-            for part in (router, expiry, presence):
-                yield from part.problems()
-
+        watched = (
+            router,
+            ExpiryWatch(pki, clock),
+            closing.enter_context(ConsolePresence(config.http)),
+        )
         views = DepartmentViews(
             picture,
             tables,
@@ -82,7 +78,7 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
             intake,
             clock,
             lambda: _enrolled(pki),
-            problems,
+            lambda: _problems(config, store, watched),
             has_archive=config.archive.location != "",
         )
         replays = ArchiveReplays(config.archive, config.http)
@@ -94,14 +90,7 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
             views=views,
             replays=replays,
         )
-        app = create_department_app(services)
-        server = ConsoleServer(
-            app,
-            listening,
-            config.http.certificate,
-            config.http.private_key,
-            is_known=app.state.known_networks.__contains__,
-        )
+        server = console_server(create_department_app(services), listening, config.http)
 
         def on_ready(line: str) -> None:
             announce(line)
@@ -114,6 +103,17 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
         announce_first_login(accounts, folder.first_login, announce)
         asyncio.run(serve_until_stopped(server, on_ready, keep_summaries))
         intake.keep_summaries()
+
+
+def _problems(
+    config: DepartmentServerConfig, store: Database, watched: tuple[ReportsProblems, ...]
+) -> Iterator[str]:
+    """Yield problems for an administrator, as sentences."""
+    yield from config.configuration_problems()
+    if store.problem:
+        yield store.problem
+    for part in watched:
+        yield from part.problems()
 
 
 def _open_database(config: DepartmentServerConfig, folder: DataFolder) -> Database:

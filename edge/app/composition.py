@@ -51,7 +51,7 @@ from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.coded_text import coded
 from shared.header_factory import HeaderFactory
-from shared.messages import EventKind, UnitEvent
+from shared.messages import EventKind, UnitDescription, UnitEvent
 from shared.service_manager import ServiceManager
 from shared.tls import TlsIdentity
 
@@ -71,34 +71,21 @@ def compose_agent(
     with ExitStack() as on_error:
         outputs = Outputs(config.outputs)
         on_error.callback(outputs.close)
-        journal, damaged = open_journal(
-            folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
-        )
+        journal, damaged = _open_journal(config, folder, clock)
         on_error.callback(journal.close)
         raw = SampleEncoder(unit_id, journal.boot_id)
         header_factory = HeaderFactory(unit_id, journal.boot_id, clock, clock.utc_std_s)
         worn = tracked_unit(unit_id) or unit_id
         sensors = fitted_sensors(config, source, worn, folder.calibrations)
         tracking = tracking_of(config, sensors)
-        description = raw.description(
-            clock.monotonic_ns(),
-            [one.as_sent() for one in sensors],
-            source=config.source_text,
-            tracker=tracking.name,
-        )
+        description = _described(config, raw, sensors, tracking, clock)
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
         pipeline = _pipeline(
             config, tracking, sensors, header_factory, journal, latch, outputs, clock
         )
         latch.set(is_active=pipeline.is_mayday_active)
-        black_box = BlackBox(
-            folder.black_box,
-            description,
-            round(config.storage.black_box_mb * 1e6),
-            clock,
-            clock.utc_std_s,
-        )
+        black_box = _black_box(config, folder, description, clock)
         on_error.callback(black_box.close)
         commands: SimpleQueue[bytes] = SimpleQueue()
         link = _link(unit_id, station, commands, journal, RecordingServer(unit_id, folder, clock))
@@ -110,24 +97,18 @@ def compose_agent(
         open_commands = OpenCommands(folder.open_commands)
         on_error.callback(open_commands.close)
         maydays = MaydayProgress()
-        handler = CommandHandler(
-            header_factory,
-            pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
-            answers_before(journal),
-            maydays,
-            has_outputs=bool(outputs.kinds),
+        handler = _command_handler(config, header_factory, pipeline, journal, maydays, outputs)
+        _report_quarantine(outbox, header_factory, folder, damaged)
+        wearer = WearerNotifier(
+            outputs, open_commands, handler, maydays, pipeline, link, journal, clock
         )
-        for detail in _quarantine_reports(folder, damaged):
-            outbox.put((UnitEvent.of(header_factory.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(
             AgentParts(
                 source=source,
                 reader=SourceReader(source, clock, speed, auxiliaries, _timekeepers(source)),
                 raw=raw,
                 pipeline=pipeline,
-                wearer=WearerNotifier(
-                    outputs, open_commands, handler, maydays, pipeline, link, journal, clock
-                ),
+                wearer=wearer,
                 header_factory=header_factory,
                 clock=clock,
                 black_box=black_box,
@@ -170,6 +151,60 @@ def _start_check(
 
 def _timekeepers(source: Source) -> Callable[[], Timekeeper] | None:
     return Follower if isinstance(source, BusSource) else None
+
+
+def _open_journal(
+    config: EdgeConfig, folder: UnitDataFolder, clock: StationClock
+) -> tuple[Journal, Path | None]:
+    """Open the journal; the second is the file of a damaged one that was set aside."""
+    size_bytes = round(config.storage.journal_mb * 1e6)
+    return open_journal(folder.journal, _new_boot_id, clock.utc_ns(), size_bytes)
+
+
+def _described(
+    config: EdgeConfig,
+    raw: SampleEncoder,
+    sensors: tuple[FittedSensor, ...],
+    tracking: Tracking,
+    clock: StationClock,
+) -> UnitDescription:
+    return raw.description(
+        clock.monotonic_ns(),
+        [one.as_sent() for one in sensors],
+        source=config.source_text,
+        tracker=tracking.name,
+    )
+
+
+def _command_handler(
+    config: EdgeConfig,
+    header_factory: HeaderFactory,
+    pipeline: TrackerPipeline,
+    journal: Journal,
+    maydays: MaydayProgress,
+    outputs: Outputs,
+) -> CommandHandler:
+    return CommandHandler(
+        header_factory,
+        pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
+        answers_before(journal),
+        maydays,
+        has_outputs=bool(outputs.kinds),
+    )
+
+
+def _black_box(
+    config: EdgeConfig, folder: UnitDataFolder, description: UnitDescription, clock: StationClock
+) -> BlackBox:
+    size_bytes = round(config.storage.black_box_mb * 1e6)
+    return BlackBox(folder.black_box, description, size_bytes, clock, clock.utc_std_s)
+
+
+def _report_quarantine(
+    outbox: Outbox, header_factory: HeaderFactory, folder: UnitDataFolder, damaged: Path | None
+) -> None:
+    for detail in _quarantine_reports(folder, damaged):
+        outbox.put((UnitEvent.of(header_factory.header(), EventKind.STORAGE_FAULT, detail),))
 
 
 def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterator[str]:

@@ -1,0 +1,356 @@
+"""The live station between its start and its end: builds its parts, and joins them."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from concurrent.futures import Future
+from contextlib import AbstractContextManager, ExitStack
+
+from base_station.api.server import serve_until_stopped
+from base_station.app.archiving import automatic_archive
+from base_station.app.catch_up import CatchUp
+from base_station.app.factories import Announce, announce_first_login
+from base_station.app.health_facts import health_facts
+from base_station.app.housekeeping import Housekeeping
+from base_station.app.live_console import new_server, new_services
+from base_station.app.live_fan_out import LiveFanOut, ProjectionFanOut
+from base_station.app.live_parts import LiveParts
+from base_station.app.live_state import LiveState
+from base_station.app.resources import Resources
+from base_station.app.restart_control import Restart, RestartControl
+from base_station.app.start_engine import start_drive
+from base_station.app.startup_console import Watch, serve_while_recovering, startup_application
+from base_station.app.unit_reports import UnitReports
+from base_station.core.alarms.thresholds import Thresholds
+from base_station.core.state import StationState
+from base_station.engine.engine import StationEngine
+from base_station.engine.liveness import LivenessMonitor
+from base_station.engine.ports import ActionResult, EnginePorts
+from base_station.engine.rate_limiter import SenderRateLimiter
+from base_station.engine.sender_bans import SenderBans
+from base_station.forwarders.interface import Surroundings
+from base_station.forwarders.running import Forwarders, make_forwarders
+from base_station.privacy.erasure_queue import ErasureQueue
+from base_station.privacy.erasure_service import BY_OTHER_STATION
+from base_station.process.shutdown_watchdog import ShutdownWatchdog
+from base_station.process.thread_crash_monitor import ThreadCrashMonitor
+from base_station.radio.radio_log import RadioLog
+from base_station.radio.recorders import RadioRecorders
+from base_station.replay.post_processing_worker import PostProcessingWorker
+from base_station.replay.processes.server import ReplayProcesses
+from base_station.site.plan_reader import PlanReader
+from base_station.standby.erasure_handover import WaitingErasure
+from base_station.standby.mode import HaMode, Paired, Parts, Standalone
+from base_station.storage.db.replicated_tables import ReplicatedTables
+from base_station.unit_sync.clock_server import ClockServer
+from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
+from base_station.views.station import StationFacts
+from shared.bus import Subscription
+from shared.channels import ROOT, clock_key
+from shared.header_factory import HeaderFactory
+from shared.messages import STATION_ID, ExternalMarker
+from shared.messages.station import Action
+from shared.service_manager import ServiceManager
+
+
+class RunningStation:
+    """The parts of a station that depend on each other, in the order in which they are built.
+
+    What a part needs only later it gets as a function: "does this station lead" is asked of a side
+    that gets the engine when that has started.
+    """
+
+    def __init__(
+        self,
+        resources: Resources,
+        thresholds: Thresholds,
+        announce: Announce,
+        manager: ServiceManager,
+        end: ShutdownWatchdog,
+        closing: ExitStack,
+    ) -> None:
+        """Begins to receive and to step; ``closing`` ends all parts in their order."""
+        self._resources, self._disk = resources, resources.disk
+        self._announce, self._manager, self._end = announce, manager, end
+        self._closing = closing
+        self._live = LiveState(thresholds, resources.config.positioning.fuser)
+        self._restarts = RestartControl(
+            self._stop_server,
+            is_leader=self._is_leader,
+            has_standby=self._has_standby,
+            is_in_incident=self._live.is_in_incident,
+        )
+        self._crashes = closing.enter_context(ThreadCrashMonitor())
+        self._replays = closing.enter_context(ReplayProcesses())
+        self._side = self._new_side()
+        self._limiter = SenderRateLimiter(self._side.feed.offer, self._disk.clock)
+        self._bans = SenderBans(resources.router.ban, self._disk.clock)
+        subscription = self._open_bus()
+        self._reports = UnitReports(resources, self._side)
+        self._forwarders = self._new_forwarders()
+        self._shown = LiveFanOut(resources.hub, self._forwarders)
+        self._downlink = self._new_downlink()
+        self._archive = automatic_archive(resources, self._replays, self._is_leader)
+        self._radio = self._new_radio()
+        self._erasures = self._new_erasure_queue()
+        self._plans = PlanReader()
+        self._engine = self._start_engine()
+        self._gate = self._side.gate_to(self._engine)
+        # Ends behind the engine: the other station gets all.
+        self._after_engine = closing.enter_context(ExitStack())
+        closing.callback(self._engine.stop)
+        closing.callback(subscription.close)  # first: late records are stepped before the end
+        self._start_exchange()
+        self._post_processor = self._disk.post_processor(self._replays)
+        self._start_work_on_log()
+        self._parts = self._live_parts()
+        self._services = new_services(self._parts)
+        self._server = new_server(self._parts, self._services, self._on_stop)
+
+    def run(self) -> Restart | None:
+        """Serve consoles until a signal comes, or the station is to start anew."""
+        self._side.start(self._gate, self._after_engine)
+        housekeeping = Housekeeping(self._parts, self._services)
+        asyncio.run(serve_until_stopped(self._server, self._on_ready, housekeeping.run))
+        return self._restarts.requested
+
+    # ---- the parts
+
+    def _new_side(self) -> HaMode:
+        resources, disk = self._resources, self._disk
+        parts = Parts(
+            data=disk.folder.path,
+            bus=resources.bus,
+            log=disk.recorder,
+            disk=disk.log,
+            files=disk.recorder,
+            check=disk.check,
+            live=resources.feed,
+            clock=disk.clock,
+            tables=ReplicatedTables(disk.store),
+            records=disk.records,
+            pki=resources.pki,
+            on_people=disk.roster.read_again,
+            on_restored_rows=disk.note_restored_rows,
+            on_lead=lambda: announce_first_login(
+                disk.accounts,
+                None if disk.store.in_memory else disk.folder.first_login,
+                self._announce,
+            ),
+            start_again=self._restarts.request,
+            step_again=self._restarts.note_repaired,
+            erasures=self._waiting_erasures,
+            forget=self._erase_for_peer,
+        )
+        standby = resources.config.standby
+        return Paired(standby, parts) if standby.name else Standalone(parts)
+
+    def _open_bus(self) -> Subscription:
+        """Begin to receive from units, and to answer their questions for the time."""
+        bus, clock = self._resources.bus, self._disk.clock
+        subscription = bus.subscribe(f"{ROOT}/**", without_text_of_commands(self._limiter.offer))
+        self._links = LivenessMonitor(bus, self._bans.ban, clock)
+        self._closing.callback(self._links.close)
+        clock_server = ClockServer(clock, self._is_leader)
+        self._closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
+        return subscription
+
+    def _new_forwarders(self) -> Forwarders:
+        return make_forwarders(
+            self._resources.config.forwarders(),
+            Surroundings(
+                clock=self._disk.clock,
+                leads=self._is_leader,
+                data=self._disk.folder.path,
+                people=self._disk.roster.known,
+                read_log=self._disk.log.records,
+                note_external=self._note_external,
+            ),
+        )
+
+    def _new_downlink(self) -> CommandSender:
+        clock = self._disk.clock
+        header_factory = HeaderFactory(STATION_ID, secrets.randbits(63), clock)
+        return CommandSender(self._resources.bus, header_factory, clock, self._disk.roster.shown)
+
+    def _new_radio(self) -> RadioRecorders:
+        return RadioRecorders(
+            self._resources.config.radio,
+            RadioLog(self._disk.folder.radio),
+            self._disk.clock,
+            self._keeps_audio_since_ns,
+        )
+
+    def _new_erasure_queue(self) -> ErasureQueue:
+        return self._disk.erasure_queue(
+            self._resources.recordings,
+            self._submit_if_leader,
+            self._request_checkpoint,
+            self._is_leader,
+            self._has_peer,
+            self._radio.erase,
+        )
+
+    def _start_engine(self) -> StationEngine:
+        saved = self._disk.latest_state()
+        self._stepped_from_ns = saved.t_ns if saved else 0
+        return start_drive(
+            self._disk.log,
+            saved,
+            self._engine_ports(),
+            self._on_replayed,
+            self._startup_console(),
+            self._plans,
+        )
+
+    def _start_exchange(self) -> None:
+        """Start erasures, backfill, commands, forwarders, radio and consoles."""
+        closing = self._closing
+        closing.enter_context(self._erasures)
+        for thread in (self._reports.backfill, self._downlink):
+            thread.start()
+            closing.callback(thread.close)
+        closing.callback(self._forwarders.close)
+        self._radio.start()
+        closing.callback(self._radio.close)
+        self._shown.start(self._engine)
+        closing.callback(self._side.feed.close)
+
+    def _start_work_on_log(self) -> None:
+        """Start what reads the log beside the engine: post-processing, catching up, the archive."""
+        disk, closing = self._disk, self._closing
+        records = disk.records
+        closing.enter_context(
+            PostProcessingWorker(self._post_processor, records.incidents, records.tracks_of)
+        )
+        prepare = disk.recorder.flush
+        closing.enter_context(CatchUp(disk.folder, self._replays, disk.projection, prepare))
+        if self._archive is not None:
+            closing.enter_context(self._archive)
+
+    def _live_parts(self) -> LiveParts:
+        return LiveParts(
+            resources=self._resources,
+            announce=self._announce,
+            live=self._live,
+            restarts=self._restarts,
+            side=self._side,
+            limiter=self._limiter,
+            bans=self._bans,
+            forwarders=self._forwarders,
+            reports=self._reports,
+            engine=self._engine,
+            gate=self._gate,
+            erasures=self._erasures,
+            plans=self._plans,
+            replays=self._replays,
+            post_processor=self._post_processor,
+        )
+
+    def _engine_ports(self) -> EnginePorts:
+        """Gives the ports of the engine."""
+        return EnginePorts(
+            feed=self._side.feed,
+            log=self._side.log,
+            live=self._shown,
+            projection=ProjectionFanOut(self._disk.projection, self._forwarders),
+            checkpoints=self._disk.checkpoints,
+            people=self._disk.roster.known,
+            facts=self._facts,
+            clock=self._disk.clock,
+            boot_id=secrets.randbits(63),
+            report=self._reports.report,
+            linked=lambda: self._links.linked,
+            unlinked=lambda: self._links.unlinked,
+            send_orders=lambda orders: self._downlink.report(orders if self._side.leads else ()),
+        )
+
+    def _startup_console(self) -> AbstractContextManager[Watch]:
+        resources = self._resources
+        return serve_while_recovering(
+            resources.recorder.segments(),
+            resources.listening,
+            resources.config.http,
+            lambda: startup_application(resources.config, self._disk),
+            self._announce,
+        )
+
+    # ---- callbacks between the parts
+
+    def _on_replayed(self, place: tuple[int, int], state: StationState) -> None:
+        """Takes the state that the log gives, before the engine runs."""
+        self._live.begin(state)
+        self._restarts.stale.note_stepped(self._stepped_from_ns, place[0])
+        self._disk.clock.hold_while(lambda: not self._is_leader() or self._live.is_in_incident())
+        self._side.begin(place, state)
+
+    def _stop_server(self) -> None:
+        self._server.stop()
+
+    def _on_ready(self, line: str) -> None:
+        """Consoles can connect."""
+        self._announce(line)
+        self._manager.ready()
+
+    def _on_stop(self) -> None:
+        resources = self._resources
+        self._post_processor.close()  # a request that waits for it would keep the station
+        self._end.begin(lambda: resources.recorder.not_kept, resources.router.close)
+
+    def _facts(self) -> StationFacts:
+        """The engine asks once a second, with a full disk and at a standby too; hanging, it does
+        not, and the service manager notices.
+        """
+        self._manager.working()
+        others = (
+            *(self._erasures, self._disk.check, self._restarts.stale, self._crashes),
+            self._radio,
+            *(() if self._archive is None else (self._archive,)),
+        )
+        return health_facts(
+            self._resources,
+            self._disk.clock,
+            self._side,
+            others,
+            missing=self._reports.backfill.gone,
+            forwarders=self._forwarders.views(),
+            radio=self._radio.views(),
+            archive=None if self._archive is None else self._archive.view(),
+        )
+
+    def _keeps_audio_since_ns(self) -> int | None:
+        return None if self._archive is None else self._archive.keeps_audio_since_ns()
+
+    def _is_leader(self) -> bool:
+        return self._side.leads
+
+    def _has_peer(self) -> bool:
+        ha_status = self._side.ha_status
+        return ha_status is not None and ha_status.view().other_role != ""
+
+    def _has_standby(self) -> bool:
+        ha_status = self._side.ha_status
+        return ha_status is not None and ha_status.view().in_step
+
+    def _submit_if_leader(self, by: str, action: Action) -> Future[ActionResult] | None:
+        """None at a standby, whose actions come from the other's log."""
+        return self._engine.submit(by, action) if self._side.leads else None
+
+    def _note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
+        self._engine.note_external(markers, removed)
+
+    def _request_checkpoint(self) -> None:
+        self._engine.save_soon()
+
+    def _waiting_erasures(self) -> list[WaitingErasure]:
+        """Erasures that another station has to order: this one does not lead."""
+        return [
+            WaitingErasure(one.forgetting_id, one.kind, one.subject_id)
+            for one in self._erasures.own_waiting()
+        ]
+
+    def _erase_for_peer(self, what: str) -> None:
+        """Forget a person or incident that the other station has forgotten: this log has it too."""
+        kind, _, one = what.partition(" ")
+        self._erasures.add(BY_OTHER_STATION, kind, one, from_peer=True)
