@@ -1,24 +1,70 @@
-"""Compilation of the trackers' kernels before an agent needs them: half a minute once, then
+"""Compilation of the trackers' kernels before an agent needs them: a minute or two once, then
 cached.
+
+Each tracker is compiled in a process of its own, one after the other: what the compiler takes of a
+unit's memory for one of them is free again before the next.  The process that starts them waits
+all that time, and loads neither trackers nor compiler.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
 
-from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.registry import TRACKERS
-
-_STILL = ImuBatch(
-    t_ns=np.arange(300) * 10_000_000,
-    accel_mps2=np.tile([0.0, 0.0, 9.81], (300, 1)),
-    gyro_radps=np.zeros((300, 3)),
-)
+from shared.errors import UserError
 
 
 def compile_trackers() -> None:
-    """Run every tracker over three seconds of stillness."""
-    for entry in TRACKERS:
-        tracker = entry.make(SensorDescription(name="still", rate_hz=100.0))
-        tracker.push(_STILL)
-        tracker.finish()
+    """Compile every tracker, those of several sensors too.
+
+    ``UserError`` where one of the processes is killed.
+    """
+    spawning = get_context("spawn")
+    with ProcessPoolExecutor(1, spawning, max_tasks_per_child=1) as processes:
+        for name in processes.submit(tracker_names).result():
+            try:
+                processes.submit(compile_tracker, name).result()
+            except BrokenProcessPool:
+                raise UserError(
+                    f"The process that compiled the tracker '{name}' was killed: most likely "
+                    "memory was short. Stop other programs or add swap, then compile again."
+                ) from None
+
+
+def tracker_names() -> list[str]:
+    from edge.tracker.registry import MULTI_SENSOR_TRACKERS, TRACKERS  # noqa: PLC0415
+
+    return [*(one.name for one in TRACKERS), *(one.name for one in MULTI_SENSOR_TRACKERS)]
+
+
+def compile_tracker(name: str) -> None:
+    """Run the tracker of this name over three seconds of stillness."""
+    import numpy as np  # noqa: PLC0415
+
+    from edge.samples import ImuBatch, SensorDescription  # noqa: PLC0415
+    from edge.tracker.interface import BodyDimensions, WornSensor  # noqa: PLC0415
+    from edge.tracker.registry import MULTI_SENSOR_TRACKERS, TRACKERS  # noqa: PLC0415
+
+    rate_hz = 100.0
+    still = ImuBatch(
+        t_ns=np.arange(300) * 10_000_000,
+        accel_mps2=np.tile([0.0, 0.0, 9.81], (300, 1)),
+        gyro_radps=np.zeros((300, 3)),
+    )
+    for single in TRACKERS:
+        if single.name == name:
+            tracker = single.make(SensorDescription("still", rate_hz=rate_hz))
+            tracker.push(still)
+            tracker.finish()
+    for several in MULTI_SENSOR_TRACKERS:
+        if several.name == name:
+            places = [choices[0] for choices in several.places]
+            sensors = {
+                place: WornSensor(SensorDescription(place, rate_hz=rate_hz), place)
+                for place in places
+            }
+            person = several.make(sensors, BodyDimensions())
+            for sensor in sensors:
+                person.push(sensor, still)
+            person.finish()

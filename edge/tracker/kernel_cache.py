@@ -1,9 +1,8 @@
 """Digest of the sources of the compiled kernels, as a part of their types.
 
 numba's cache on disk compares the time stamp of the file that holds a function, not of the files of
-the functions it calls.  So only the entry points ``preprocess`` and ``work`` are cached, and the
-types of their arguments carry this digest of all sources: an edit or an upgrade anywhere compiles
-again.
+the functions it calls.  So only the functions that Python calls are cached, and the types of their
+arguments carry this digest of all sources: an edit or an upgrade anywhere compiles again.
 """
 
 from __future__ import annotations

@@ -18,7 +18,6 @@ import typer
 from rich.console import Console as Terminal
 from rich.table import Table
 
-from edge.app.jit_warmup import compile_trackers
 from edge.sources.registry import open_source
 from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
@@ -66,7 +65,6 @@ def bench_sensor(
     """
     if not has_umockdev():
         raise ConfigError("no umockdev on this machine: install the package umockdev")
-    compile_trackers()
     walk = raw_walk()
     rows = [
         measure("one device", "iio:bmi160", "eskf", seconds, walk),

@@ -26,7 +26,6 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from deploy.demo.panel_button import PanelButton
-from edge.app.jit_warmup import compile_trackers
 from edge.wearer.gestures import HOLD_NS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
@@ -63,7 +62,6 @@ def bench_wearer(
     """Measure the delays of a button on the screen, of an order at the wearer and of a pre-alert at
     its output; once without the radio.
     """
-    compile_trackers()
     with TemporaryDirectory(prefix="muster-bench-") as folder:
         pre_alert_s = measure_pre_alerts(trials, Path(folder))
     with Progress(transient=True) as progress:

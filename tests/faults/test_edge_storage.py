@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from edge.app.composition import compose_agent
-from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
 from edge.sources.registry import open_source
 from edge.storage.data_folder import UnitDataFolder
@@ -83,7 +82,6 @@ class AgentThread:
     """An agent in a thread, with its insides at hand."""
 
     def __init__(self, folder: Path) -> None:
-        compile_trackers()
         self.station = Station()
         self.data = UnitDataFolder(folder / "u1")
         config = EdgeConfig(unit="u1", source="simulated:search-ground-floor", data=folder)

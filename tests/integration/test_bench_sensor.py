@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from tests.bench.sensor import measure, raw_walk
 from tests.bench.whole_unit import measure_whole_unit
 from tests.rig.kernel_devices import has_umockdev
@@ -15,7 +14,6 @@ pytestmark = pytest.mark.skipif(
 
 
 def test_an_agent_is_measured_while_it_takes_every_sample() -> None:
-    compile_trackers()
     row = measure("one device", "iio:bmi160", "eskf", 2.0, raw_walk())
     assert row.cores > 0.0
     assert row.rate_hz == pytest.approx(400.0, rel=0.01)
@@ -23,7 +21,6 @@ def test_an_agent_is_measured_while_it_takes_every_sample() -> None:
 
 
 def test_complete_unit_is_measured_with_its_temperatures(tmp_path_factory) -> None:
-    compile_trackers()
     machine = tmp_path_factory.mktemp("m", numbered=True)
     figures = measure_whole_unit(1.0, 2, machine, raw_walk())
     assert figures.cores > 0.0

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
 from shared.clock import SystemClock
@@ -67,12 +66,6 @@ class Station:
             message = decode(channel, payload)
             self.raw[message.header.boot_id, message.header.seq] = payload
             self.messages.append(message)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def compiled() -> None:
-    """So that no agent spends its first minute compiling."""
-    compile_trackers()
 
 
 @pytest.fixture

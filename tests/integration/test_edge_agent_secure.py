@@ -10,18 +10,11 @@ from pathlib import Path
 import pytest
 
 from base_station.security.pki.folder import PkiFolder
-from edge.app.jit_warmup import compile_trackers
 from shared.channels import POSITION, ROOT, tracker_id
 from shared.enrolment import Holder
 from tests.rig.enrolled_site import EnrolledSite
 from tests.rig.station_command import Agent
 from tests.rig.waiting import until
-
-
-@pytest.fixture(scope="module", autouse=True)
-def compiled() -> None:
-    """So that no agent spends its first minute compiling."""
-    compile_trackers()
 
 
 @pytest.fixture

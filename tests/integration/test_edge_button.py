@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from tests.rig.emulated_button import NAME, AgentWithButton, has_umockdev_run
 from tests.rig.shown_unit import ShownUnit
 from tests.rig.station_command import Browser, Command
@@ -37,8 +36,6 @@ def shown(serve: Callable[..., Command], data: Path) -> Iterator[ShownUnit]:
 
 @pytest.fixture
 def started(port: int, tmp_path: Path) -> Callable[..., AgentWithButton]:
-    compile_trackers()
-
     def started(name: str, *, is_held: bool) -> AgentWithButton:
         return AgentWithButton(
             tmp_path / name,

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from edge.storage.data_folder import UnitDataFolder
 from tests.rig.enrolled_site import EnrolledSite
 from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev
@@ -96,7 +95,6 @@ def test_devices_of_the_kernel_are_checked(tmp_path: Path, port: int) -> None:
 def test_start_check_of_a_unit_is_shown_on_its_card(
     tmp_path: Path, serve: Callable[..., Command], data: Path, port: int
 ) -> None:
-    compile_trackers()
     where = ("--data", str(tmp_path / "units"), "--connect", f"tcp/127.0.0.1:{port}")
     with ExitStack() as stack:
         browser = stack.enter_context(Browser(serve().wait_ready(), data))

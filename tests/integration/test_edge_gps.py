@@ -18,7 +18,6 @@ from base_station.core.events import Received
 from base_station.core.pipeline import StationPipeline
 from base_station.fusion import FUSERS
 from edge.app.composition import compose_agent
-from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
 from edge.samples import GpsSample, ImuBatch
 from edge.sources.gnss.registry import open_receiver
@@ -148,7 +147,6 @@ def worn(config: EdgeConfig, folder: UnitDataFolder, station: Station) -> Iterat
 
 @pytest.mark.parametrize("kind", ["gpsd", "nmea"])
 def test_fixes_of_a_receiver_position_a_walk(kind: str, tmp_path: Path) -> None:
-    compile_trackers()
     imu, fixes = walked()
     due = [((fix.t_ns - BEGIN_NS) / NS_PER_S + LATE_S, stated_of(fix)) for fix in fixes]
     pretend, say = (GpsdServer, gpsd_report) if kind == "gpsd" else (TcpDevice, burst)

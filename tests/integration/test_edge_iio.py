@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from edge.sources.registry import open_source
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, parse_key
@@ -89,8 +88,6 @@ def station(port: int) -> Iterator[Station]:
 def started(
     machine: Path, requests: DeviceRequests, port: int, tmp_path: Path
 ) -> Callable[..., EmulatedAgent]:
-    compile_trackers()
-
     def started(*flags: str, command: str = "run") -> EmulatedAgent:
         where = ("--data", str(tmp_path / "edge"), "--connect", f"tcp/127.0.0.1:{port}")
         output = tmp_path / "agent.txt"

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev, write_attributes
 from tests.rig.shown_unit import ShownUnit
 from tests.rig.station_command import Browser, Command
@@ -37,8 +36,6 @@ def shown(serve: Callable[..., Command], data: Path) -> Iterator[ShownUnit]:
 
 @pytest.fixture
 def started(tree: SysfsTree, port: int, tmp_path: Path) -> Callable[..., EmulatedAgent]:
-    compile_trackers()
-
     def started(*flags: str) -> EmulatedAgent:
         where = ("--data", str(tmp_path / "edge"), "--connect", f"tcp/127.0.0.1:{port}")
         of = ("--unit", "u1", "--source", "bench:5")

@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 from deploy.demo.panel_button import PanelButton
-from edge.app.jit_warmup import compile_trackers
 from tests.rig.shown_unit import ShownUnit
 from tests.rig.station_command import Agent, Browser, Command
 from tests.rig.waiting import until
@@ -53,7 +52,6 @@ def panel(panel_path: Path) -> Iterator[PanelButton]:
 def started(
     port: int, tmp_path: Path, panel_path: Path, panel: PanelButton
 ) -> Iterator[Callable[..., Agent]]:
-    compile_trackers()
     agents: list[Agent] = []
 
     def started(*outputs: str, source: str = "bench:5") -> Agent:

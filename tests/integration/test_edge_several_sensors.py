@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from edge.app.jit_warmup import compile_trackers
 from edge.samples import ImuBatch
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.registry import open_sensors, open_source
@@ -24,12 +23,6 @@ from tests.rig.waiting import until
 FOOT_DIES_S, BACK_DIES_S = 8.0, 20.0
 WALK = "simulated:search-ground-floor?seed=3"
 COLUMNS = "t_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,gyro_x_radps,gyro_y_radps,gyro_z_radps"
-
-
-@pytest.fixture(scope="module", autouse=True)
-def compiled() -> None:
-    """So that no agent spends its first minute compiling."""
-    compile_trackers()
 
 
 @pytest.fixture

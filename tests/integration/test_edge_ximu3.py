@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
-from edge.app.jit_warmup import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, parse_key
 from shared.codec import decode
@@ -27,7 +26,6 @@ def at_its_pace() -> Iterator[bytes]:
 
 
 def test_agent_reports_a_removed_sensor_and_continues(port: int, tmp_path: Path) -> None:
-    compile_trackers()
     received: list[Message] = []
 
     def take(key: str, payload: bytes) -> None:

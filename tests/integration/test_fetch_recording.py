@@ -11,7 +11,6 @@ import pytest
 from typer.testing import CliRunner
 
 from base_station.cli import app
-from edge.app.jit_warmup import compile_trackers
 from edge.sources.black_box import BlackBoxSource
 from shared.errors import UserError
 from shared.mcap_log import segment_paths
@@ -26,7 +25,6 @@ class RecordingScene:
     """A station and an agent that records."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        compile_trackers()
         self.folder = folder
         self.data = folder / "station"
         self.bus = f"tcp/127.0.0.1:{free_port()}"

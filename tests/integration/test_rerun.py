@@ -12,7 +12,6 @@ from typer.testing import CliRunner, Result
 
 from base_station.cli import app
 from base_station.replay.rerun.comparison import RerunReport
-from edge.app.jit_warmup import compile_trackers
 from shared.errors import RecordingError, UserError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, read_log, segment_paths
 from tests.rig.retracked_incident import write_incident
@@ -42,7 +41,6 @@ def rerun(data: Path, *options: str) -> Result:
 
 @pytest.fixture(scope="module")
 def given(tmp_path_factory: pytest.TempPathFactory) -> RerunFolders:
-    compile_trackers()
     return RerunFolders(tmp_path_factory.mktemp("given"))
 
 

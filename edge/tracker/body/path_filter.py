@@ -33,7 +33,7 @@ from edge.tracker.body.state import (
 _UNKNOWN_UT = 60.0  # an axis, of a field of which nothing is known
 
 
-@njit()
+@njit(cache=True)
 def start_path(state: BodyState, iron_std_ut: float, gain_std: float, config: BodyConfig) -> None:
     """Begin at the origin with a heading that is the frame's."""
     covariance = state.covariance

@@ -196,7 +196,7 @@ def preprocess(
     return len(t_ns)
 
 
-@njit()
+@njit(cache=True)
 def _lacks_good_samples(input_state: NDArray[Any]) -> bool:
     if input_state[0].bad_run == 0:
         return False

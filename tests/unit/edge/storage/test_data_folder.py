@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from edge.app.composition import compose_agent
-from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
 from edge.sources.registry import open_source
 from edge.storage.data_folder import UnitDataFolder
@@ -83,7 +82,6 @@ def test_data_of_another_unit_is_moved_aside_and_not_served(tmp_path: Path) -> N
 
 
 def test_a_person_is_reported_of_it(tmp_path: Path) -> None:
-    compile_trackers()
     keep_something(tmp_path / "anna")
     shutil.copytree(tmp_path / "anna", tmp_path / "bert")
     folder = UnitDataFolder(tmp_path / "bert")
