@@ -57,10 +57,13 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     """Compile the trackers before the first test: its time is limited, and this may take a minute.
 
     Once after each change of them; of tests side by side the first process does it for all.
+    ``./muster`` has done it before it starts the tests.
     """
     gc.freeze()
     gc.enable()
     if session.config.option.collectonly or not session.items:
+        return
+    if "MUSTER_KERNELS_COMPILED" in os.environ:
         return
     digest = hashlib.sha256()
     for path in sorted((PROJECT_ROOT / "edge" / "tracker").glob("**/*.py")):
