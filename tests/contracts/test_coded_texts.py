@@ -27,7 +27,7 @@ PARTS = (
     ),
 )
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
-_MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
+MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 _BRACE = re.compile(r"\{(\w*)|\}")
 
 
@@ -68,7 +68,7 @@ def messages_of(language: str) -> dict[str, str]:
     found = [
         message
         for part in PARTS
-        for message in _MESSAGE.findall((_CATALOGUES / language / f"{part}.ts").read_text())
+        for message in MESSAGE.findall((_CATALOGUES / language / f"{part}.ts").read_text())
     ]
     assert len(dict(found)) == len(found)  # the console finds a code in one of them
     return dict(found)

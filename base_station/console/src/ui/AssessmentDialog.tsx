@@ -10,6 +10,7 @@ import {
   lightParts,
   NOTHING,
   pinWords,
+  reasonWords,
   TERMS,
   tooSure,
   wearerOf,
@@ -154,7 +155,7 @@ function Lights({ report }: { report: Assessment }) {
               {unit.trust.causes.length === 0 && NOTHING}
               {unit.trust.causes.map(([cause, seconds]) => (
                 <div key={cause}>
-                  {cause} {unbroken(seconds)}
+                  {reasonWords(cause)} {unbroken(seconds)}
                 </div>
               ))}
             </td>
@@ -230,7 +231,7 @@ function Checks({ report }: { report: Assessment }) {
               {unit.pin_residuals.map(pinWords).join("; ") || NOTHING}
             </td>
             <td class="detail" data-label={t("assessment.not_used")}>
-              {unit.not_used.map(([reason, count]) => `${count} ${reason}`).join("; ") || NOTHING}
+              {unit.not_used.map(([reason, count]) => `${count} ${reasonWords(reason)}`).join("; ") || NOTHING}
             </td>
           </tr>
         ))}

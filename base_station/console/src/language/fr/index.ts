@@ -3,6 +3,7 @@ export * from "./alarm_list";
 export * from "./alarm_texts";
 export * from "./alarms";
 export * from "./assessment";
+export * from "./assessment_reasons";
 export * from "./audit";
 export * from "./common";
 export * from "./department";
