@@ -1,8 +1,27 @@
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { brotliCompressSync, gzipSync } from "node:zlib";
+import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
+
+/** Scripts and styles are compressed once, as small as possible; the station sends these files as they are. */
+const compressed: Plugin = {
+  name: "compressed",
+  apply: "build",
+  writeBundle({ dir = "" }, bundle) {
+    for (const name of Object.keys(bundle).filter((one) => /\.(js|css)$/.test(one))) {
+      const path = join(dir, name);
+      const content = readFileSync(path);
+      writeFileSync(`${path}.br`, brotliCompressSync(content));
+      writeFileSync(`${path}.gz`, gzipSync(content, { level: 9 }));
+    }
+  },
+};
 
 // `npm run dev` talks to a station on its usual port; the built console is served by the station.
 export default defineConfig({
   base: "/",
+  plugins: [compressed],
   server: { proxy: { "/api": { target: "http://127.0.0.1:8080", ws: true } } },
   build: {
     target: "es2022",

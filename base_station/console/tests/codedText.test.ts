@@ -1,6 +1,6 @@
 /** Texts by the codes of the station, in every language. */
 import { afterEach, describe, expect, test } from "vitest";
-import { show } from "../src/language/catalogue";
+import { loadRefusals, show } from "../src/language/catalogue";
 import { codedText, problemTexts, refusalText } from "../src/live/codedText";
 
 const FULL = {
@@ -70,14 +70,19 @@ describe("a refusal of the station", () => {
 
   test("is composed in the chosen language from code and parameters", async () => {
     await show("de");
+    expect(refusalText(WRONG)).toBe(WRONG.detail); // not fetched yet
+    await loadRefusals();
     expect(refusalText(WRONG)).toMatch(/^Der Ort ist 1\.200.m vom Gebäude des Plans entfernt; höchstens 500.m sind/);
     expect(refusalText({ detail: "Name or password is wrong.", code: "login-wrong", parameters: {} })).toBe(
       "Name oder Passwort ist falsch.",
     );
+    await show("fr");
+    expect(refusalText(WRONG)).toBe(WRONG.detail); // not those of another language
   });
 
   test("of another version, or without a code, stays as the station wrote it", async () => {
     await show("de");
+    await loadRefusals();
     expect(refusalText({ ...WRONG, code: "of-a-later-version" })).toBe(WRONG.detail);
     expect(refusalText({ ...WRONG, parameters: { other: 1 } })).toBe(WRONG.detail);
     expect(refusalText({ ...WRONG, parameters: "none" })).toBe(WRONG.detail);

@@ -1,14 +1,21 @@
 import { IntlMessageFormat } from "intl-messageformat";
 import { afterEach, describe, expect, it } from "vitest";
 import * as format from "../src/format";
-import { type Catalogue, type Language, LANGUAGES, type PartName, show, shown } from "../src/language/catalogue";
+import { type Catalogue, type Language, LANGUAGES, type PartName, type RefusalPart, type Refusals, show, shown } from "../src/language/catalogue";
 import * as de from "../src/language/de";
+import * as refusals_de from "../src/language/de/refusals";
 import * as en from "../src/language/en";
+import * as refusals_en from "../src/language/en/refusals";
 import * as fr from "../src/language/fr";
+import * as refusals_fr from "../src/language/fr/refusals";
 import { degrees, floorNames, length, metresOf, shownLength, speed, units } from "../src/language/measures";
 import { label, rich, t } from "../src/language/translate";
 
-const CATALOGUES: Record<Language, Catalogue> = { en, de, fr };
+const CATALOGUES: Record<Language, Catalogue & Refusals> = {
+  en: { ...en, ...refusals_en },
+  de: { ...de, ...refusals_de },
+  fr: { ...fr, ...refusals_fr },
+};
 
 interface Element {
   type: number;
@@ -33,7 +40,7 @@ function parsed(message: string): Element[] {
   return format.getAst() as Element[];
 }
 
-const PARTS = Object.keys(en) as PartName[];
+const PARTS = Object.keys(CATALOGUES.en) as (PartName | RefusalPart)[];
 
 describe("the catalogues", () => {
   it.each(LANGUAGES.filter((one) => one !== "en"))("have the same keys and placeholders in %s", (language) => {
@@ -41,8 +48,8 @@ describe("the catalogues", () => {
     expect(Object.keys(other)).toEqual(PARTS);
     for (const part of PARTS) {
       const texts: Readonly<Record<string, string>> = other[part];
-      expect(Object.keys(texts).sort(), part).toEqual(Object.keys(en[part]).sort());
-      for (const [key, message] of Object.entries<string>(en[part])) {
+      expect(Object.keys(texts).sort(), part).toEqual(Object.keys(CATALOGUES.en[part]).sort());
+      for (const [key, message] of Object.entries<string>(CATALOGUES.en[part])) {
         const theirs = texts[key] ?? "";
         expect(theirs.trim(), `${part}.${key}`).not.toBe("");
         expect(placeholders(parsed(theirs)), `${part}.${key}`).toEqual(placeholders(parsed(message)));

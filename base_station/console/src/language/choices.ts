@@ -1,7 +1,7 @@
 /** The language, units and names of floors that this browser keeps. */
 import { effect, signal } from "@preact/signals";
 import { kept } from "../kept";
-import { type Language, LANGUAGES, show } from "./catalogue";
+import { type Language, LANGUAGES, loadRefusals, show } from "./catalogue";
 import { FLOOR_NAMES, floorNames, UNITS, units } from "./measures";
 
 const CHOICES = ["browser", ...LANGUAGES] as const;
@@ -38,11 +38,26 @@ async function follow(choice: LanguageChoice): Promise<void> {
   try {
     await show(choice === "browser" ? browsers() : choice);
     languageMissing.value = false;
+    void followRefusals(choice);
   } catch (error) {
     console.warn(error);
     languageMissing.value = true;
-    setTimeout(() => choice === languageChoice.peek() && void follow(choice), AGAIN_MS);
+    askAgain(choice, follow);
   }
+}
+
+/** Nothing is missing on the page without them: the station's own English is shown. */
+async function followRefusals(choice: LanguageChoice): Promise<void> {
+  try {
+    await loadRefusals();
+  } catch (error) {
+    console.warn(error);
+    askAgain(choice, followRefusals);
+  }
+}
+
+function askAgain(choice: LanguageChoice, ask: (choice: LanguageChoice) => Promise<void>): void {
+  setTimeout(() => choice === languageChoice.peek() && void ask(choice), AGAIN_MS);
 }
 
 /** Follows the choice from now on; done when the first one is shown. */

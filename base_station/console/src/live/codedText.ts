@@ -1,6 +1,6 @@
 /** Texts by the codes and parameters of the station.  Pure. */
 import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
-import type { PartName } from "../language/catalogue";
+import type { PartName, RefusalPart } from "../language/catalogue";
 import { length, listed } from "../language/measures";
 import { knownLabel, knownMessage, label, t } from "../language/translate";
 import type { HealthView, TextCodeView } from "../wire";
@@ -18,7 +18,7 @@ const PARTS = [
   "refusal_past",
   "refusal_station",
   "refusal_form",
-] as const satisfies readonly PartName[];
+] as const satisfies readonly (PartName | RefusalPart)[];
 
 /** The text in the chosen language; the English one where there is no code, as of an earlier version, or one
  * of another version or of a foreign unit. */

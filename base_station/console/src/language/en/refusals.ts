@@ -1,0 +1,8 @@
+/** Refusals of the station in English; fetched when the page is shown. */
+export * from "./refusals_access";
+export * from "./refusals_form";
+export * from "./refusals_incident";
+export * from "./refusals_past";
+export * from "./refusals_people";
+export * from "./refusals_plan";
+export * from "./refusals_station";
