@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from edge.tracker.trunk.unseen_motion import UnseenMotion
+from edge.tracker.trunk.usual_steps import UsualSteps
+
 UNKNOWN_PLACE, TRUNK, HAND, POCKET = range(4)  # where the sensor is
 
 
@@ -51,6 +54,7 @@ class BodyConfig(NamedTuple):
     place: int = UNKNOWN_PLACE
     scale_std: float = 0.08  # of a person of whom nothing is known
     step_std: float = 0.35  # of a single step, by its length
+    usual: UsualSteps = UsualSteps()  # beyond them a step is doubted; see step_doubt
     usual_step_m: float = 0.65  # of adults who walk indoors; see path_noise
     usual_speed_mps: float = 1.2  # of the same
 
@@ -69,7 +73,8 @@ class BodyConfig(NamedTuple):
     compass_s: float = 0.5
     compass_std_ut: float = 1.0
     outlier_sigmas: float = 3.0
-    unseen_mps: float = 0.4  # movement without steps
+    unseen: UnseenMotion = UnseenMotion()
+    sway_m: float = 0.05  # an axis, of the sensor on a person whose feet stand
 
     late_delivery_s: float = 0.04
     gap_s: float = 0.1

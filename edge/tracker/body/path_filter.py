@@ -29,6 +29,7 @@ from edge.tracker.body.state import (
     TICK_S,
     BodyState,
 )
+from edge.tracker.trunk.unseen_motion import unseen_m2
 
 _UNKNOWN_UT = 60.0  # an axis, of a field of which nothing is known
 
@@ -95,7 +96,7 @@ def walk_step(state: BodyState, length_m: float, heading_rad: float, config: Bod
 @njit()
 def take_unseen_motion(state: BodyState, config: BodyConfig) -> None:
     """Widen the position over a tick of motion that no step explains."""
-    variance_m2 = config.unseen_mps**2 * TICK_S
+    variance_m2 = unseen_m2(state.moving_s, TICK_S, config.unseen)
     state.covariance[NORTH, NORTH] += variance_m2
     state.covariance[EAST, EAST] += variance_m2
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from edge.tracker.body.config import BodyConfig
-from edge.tracker.body.state import EAST, FIELD, HEADING, NORTH, BodyState, Sample, Trail
+from edge.tracker.body.state import FIELD, HEADING, NORTH, BodyState, Sample, Trail
 from edge.tracker.body.walking_direction import direction_rad
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.mechanization.quasi_static import turn_heading
@@ -73,7 +73,7 @@ def _write(ring: Ring, trail: Trail, state: BodyState, k: int, config: BodyConfi
     row.velocity_n_mps[0] = walked.speed_mps * north
     row.velocity_n_mps[1] = walked.speed_mps * east
     row.velocity_n_mps[2] = 0.0
-    _write_errors(row, state)
+    _write_errors(row, state, config)
     direction = direction_rad(state)
     turn_heading(row.quaternion_nb, -state.estimate[HEADING] - direction)
     row.stationary = walked.speed_mps == 0.0
@@ -84,13 +84,15 @@ def _write(ring: Ring, trail: Trail, state: BodyState, k: int, config: BodyConfi
 
 
 @njit()
-def _write_errors(row: Sample, state: BodyState) -> None:
+def _write_errors(row: Sample, state: BodyState, config: BodyConfig) -> None:
     covariance = state.covariance
     for i in range(3):
         row.position_cov_m2[i, 2] = row.position_cov_m2[2, i] = 0.0
     for i in range(2):
         for j in range(2):
-            row.position_cov_m2[i, j] = covariance[NORTH + i, NORTH + j]
+            unusual_m2 = state.unusual_m[i] * state.unusual_m[j]
+            row.position_cov_m2[i, j] = covariance[NORTH + i, NORTH + j] + unusual_m2
+        row.position_cov_m2[i, i] += config.sway_m**2
     level_m = _LEVEL_STD_M + _LEVEL_SLOPE * state.distance_m
     height_m = level_m if state.pressure_pa == 0.0 else min(level_m, _BAROMETER_STD_M)
     row.position_cov_m2[2, 2] = height_m**2
@@ -123,8 +125,7 @@ def _write_quality(row: Sample, state: BodyState, config: BodyConfig) -> None:
     if 0.0 <= row.t_s - state.fault_s <= config.fault_s:
         reasons |= state.faults
     is_faulty = reasons != 0
-    covariance = state.covariance
-    std_m = math.sqrt(max(covariance[NORTH, NORTH], 0.0) + max(covariance[EAST, EAST], 0.0))
+    std_m = math.sqrt(row.position_cov_m2[0, 0] + row.position_cov_m2[1, 1])
     if std_m > config.degraded_m:
         reasons |= UNCERTAIN
     if row.heading_std_rad > config.unsettled_rad:

@@ -62,6 +62,9 @@ BODY = np.dtype(
         ("step_count", np.int64),
         ("turned_s", np.float64, 2),  # ends of the last two steps
         ("turned_rad", np.float64, 2),  # ... and the heading there
+        ("ended_down_m", np.float64, 2),  # ... and the height there
+        ("last_step_s", np.float64),
+        ("unusual_m", np.float64, 2),  # what one deviation of these steps makes, north and east
         # walking direction, north and east in the frame that turns with the heading
         ("direction", np.float64, 2),
         ("falling", np.float64, 2),  # the part in phase with the downward velocity
@@ -89,6 +92,7 @@ BODY = np.dtype(
         # height
         ("pressure_pa", np.float64),  # low-passed; 0 before the first
         ("first_pressure_pa", np.float64),
+        ("pressure_age_s", np.float64),  # since the last one
         ("down_m", np.float64),
         # rows
         ("position_n_m", np.float64, 2),

@@ -40,6 +40,7 @@ from edge.tracker.body.state import (
     Ticks,
     Trail,
 )
+from edge.tracker.body.step_doubt import step_doubt_m, take_doubt
 from edge.tracker.body.step_length import step_length
 from edge.tracker.body.steps import begins_to_rise
 from edge.tracker.body.thigh_swing import recognise_thigh, swing_rate
@@ -203,6 +204,7 @@ def _end_swing(
     recognise_thigh(ticks, state, from_s, now_s, config)
     scale = 1.0 + state.estimate[SCALE]
     length_m = scale * step_length(ticks, state, from_s, now_s, config)
+    doubt_m = step_doubt_m(state, step_s, length_m, config)
     # The first foot goes before the first swing; how far is known when the walk goes on.
     state.swings += 1
     steps = 2 if state.swings == 2 else 1
@@ -211,6 +213,7 @@ def _end_swing(
     heading_rad = trail[(k - 1) & (len(ring) - 1)].heading_rad if k else 0.0
     for _ in range(steps):
         walk_step(state, length_m, heading_rad, config)
+        take_doubt(state, doubt_m, heading_rad)
     spread_step(ring, trail, state, k, from_s, now_s, steps * length_m)
     release_to(ring, trail, state, k, config)
 
@@ -220,12 +223,12 @@ def _watch_motion(state: BodyState, now_s: float, config: BodyConfig) -> None:
     """Motion for longer than a step may last, and no step: a crawl, a climb, or a vehicle."""
     if now_s - state.event_s > config.longest_step_s:
         state.swings = 0
-    if state.quiet_s >= config.rest_s:
+    if state.quiet_s >= config.unseen.rest_s:
         state.moving_s = 0.0
+    if state.quiet_s >= config.rest_s:
         return
     state.moving_s += TICK_S
-    if state.moving_s > config.longest_step_s:
-        take_unseen_motion(state, config)
+    take_unseen_motion(state, config)
 
 
 @njit()

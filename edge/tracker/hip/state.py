@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from edge.tracker.trunk.state import TRUNK, TrunkConfig
+from edge.tracker.trunk.usual_steps import UsualSteps
 
 HipState: TypeAlias = Any  # one record of HIP
 
@@ -25,6 +26,7 @@ HIP = np.dtype(
         ("sum_mps2", np.float64),
         ("swing_sum_mps2", np.float64),  # of the size of what gravity does not explain
         ("samples", np.int64),
+        ("passed_over", np.int64),  # rounds since the last step that ended too early for one
         ("step_at", np.int64),  # end of the last step
         ("step_s", np.float64),
         ("step_height_m", np.float64),
@@ -94,5 +96,4 @@ class HipConfig(NamedTuple):
     straight_radps: float = 0.12
     straight_s: float = 3.0
     corner_rad: float = 0.5  # within which a turn between two straight ways is a right angle
-    stairs_m: float = 0.06
-    outside_std: float = 0.5
+    usual: UsualSteps = UsualSteps()

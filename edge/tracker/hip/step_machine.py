@@ -34,7 +34,10 @@ def ends_step(ring: Ring, state: HipState, k: int, config: HipConfig) -> bool:
         return False
     if not _passes_all(state, above_mps2, config):
         return False
-    return bool(not state.walking or now_s - state.step_s >= config.least_period_s)
+    if state.walking and now_s - state.step_s < config.least_period_s:
+        state.passed_over += 1
+        return False
+    return True
 
 
 @njit()

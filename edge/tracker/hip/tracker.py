@@ -34,6 +34,7 @@ from edge.tracker.trunk.dead_reckoning import (
 )
 from edge.tracker.trunk.follow import follow_sample
 from edge.tracker.trunk.kernel_tracker import KernelTracker, is_past, new_states, take_times
+from edge.tracker.trunk.usual_steps import is_usual, length_std
 
 
 class HipTracker(KernelTracker):
@@ -85,20 +86,31 @@ def _step(
     constrain_heading(state, forward_n, t_s, period_s, config)
     for i in range(3):
         from_n_m[i] = trunk.position_n_m[i]
-    std = config.trunk.length_std
-    if abs(trunk.height_m - state.step_height_m) >= config.stairs_m:
-        std = config.outside_std
     if config.velocity_model == NO_MODEL:
         from_distance_m = trunk.distance_m
-        take_step(trunk, step_length_m(state, config), std, forward_n, t_s, config.trunk)
+        length_m = step_length_m(state, config)
+        std = _length_std(state, period_s, length_m, config)
+        take_step(trunk, length_m, std, forward_n, t_s, config.trunk)
         write_rows(ring, trunk, first, k, from_n_m, from_distance_m, config.trunk)
     else:
-        _integrate(ring, state, begin, first, k, period_s, std, from_n_m, config)
+        _integrate(ring, state, begin, first, k, period_s, from_n_m, config)
     trunk.released = max(trunk.released, k + 1)
     state.step_at = k
     state.step_s = t_s
     state.step_height_m = trunk.height_m
+    state.passed_over = 0
     state.walking = True
+
+
+@njit()
+def _length_std(state: HipState, period_s: float, length_m: float, config: HipConfig) -> float:
+    """Deviation of the step's length as a share of it; the first of a walk has no period yet."""
+    usual, std = config.usual, config.trunk.length_std
+    steps, climbed_m = 1 + state.passed_over, state.trunk.height_m - state.step_height_m
+    in_air = state.lowest_mps2 < usual.least_force * config.trunk.gravity_mps2
+    if not state.walking or (is_usual(steps, period_s, climbed_m, usual) and not in_air):
+        return std
+    return float(length_std(steps, period_s, length_m, std, usual))
 
 
 @njit()
@@ -109,7 +121,6 @@ def _integrate(
     first: int,
     last: int,
     period_s: float,
-    std: float,
     from_n_m: Floats,
     config: HipConfig,
 ) -> None:
@@ -160,6 +171,7 @@ def _integrate(
     length_m = math.sqrt(way_n_m[0] ** 2 + way_n_m[1] ** 2)
     for i in range(2):
         forward_n[i] = way_n_m[i] / max(length_m, 1e-9)
+    std = _length_std(state, period_s, length_m, config)
     take_step(trunk, length_m, std, forward_n, ring[last & mask].t_s, config.trunk)
     trunk.distance_m = from_distance_m + way_m
     for k in range(first, last + 1):

@@ -26,7 +26,7 @@ def follow_steps(ring: Ring, state: StrideState, k: int, config: TorsoShankConfi
     period_s = t_s - waist.step_s
     waist.walking = waist.walking and period_s <= config.waist.longest_period_s
     if not waist.walking:
-        period_s = 1.0 / config.waist.least_hz
+        period_s = 1.0 / config.waist.usual.least_hz
     length_m = _learnt_ratio(state) * step_length_m(period_s, config.waist)
     state.steps_since_m += length_m
     if state.steps_since == 0:

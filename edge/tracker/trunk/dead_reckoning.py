@@ -18,6 +18,7 @@ from edge.tracker.preprocessing.sample_ring import Ring, history
 from edge.tracker.trunk.attitude import add_forward
 from edge.tracker.trunk.pressure_height import height_var_m2
 from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState
+from edge.tracker.trunk.unseen_motion import unseen_m2
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)
 UNCERTAIN, UNSETTLED = int(Reason.UNCERTAIN), int(Reason.UNSETTLED)
@@ -75,6 +76,18 @@ def take_step(
     trunk.random_m2 += (random_std * length_m) ** 2
     trunk.distance_m += length_m
     trunk.steps += 1
+    trunk.moving_s = 0.0
+
+
+@njit()
+def watch_motion(trunk: TrunkState, dt_s: float, config: TrunkConfig) -> None:
+    """Widen the place while the wearer moves, and no step is found."""
+    if trunk.quiet_s >= config.unseen.rest_s:
+        trunk.moving_s = 0.0
+    if trunk.still:
+        return
+    trunk.moving_s += dt_s
+    trunk.random_m2 += unseen_m2(trunk.moving_s, dt_s, config.unseen)
 
 
 @njit()

@@ -8,6 +8,7 @@ import numpy as np
 
 from edge.samples import SensorDescription
 from edge.tracker.kernel_cache import SOURCES
+from edge.tracker.trunk.unseen_motion import UnseenMotion
 
 TrunkState: TypeAlias = Any  # one record of TRUNK
 Row: TypeAlias = Any  # one record of a ring
@@ -40,6 +41,7 @@ TRUNK = np.dtype(
         ("length_error_m", np.float64, 2),  # what one deviation of the step length would make
         ("heading_error_m", np.float64, 2),  # ... of the heading
         ("facing_n", np.float64, 2),  # where the last step went
+        ("moving_s", np.float64),  # since a rest or a step
         ("random_m2", np.float64),  # what differs from step to step
         ("distance_m", np.float64),
         ("steps", np.int64),  # of both feet
@@ -84,6 +86,7 @@ class TrunkConfig(NamedTuple):
     unknown_bias_radps: float = 0.0175
     known_bias_radps: float = 0.0012
     heading_std_rad: float = 0.03
+    unseen: UnseenMotion = UnseenMotion()
     degraded_m: float = 3.0
     lost_m: float = 15.0
 

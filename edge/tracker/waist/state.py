@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from edge.tracker.trunk.state import TRUNK, TrunkConfig
+from edge.tracker.trunk.usual_steps import UsualSteps
 
 WaistState: TypeAlias = Any  # one record of WAIST
 
@@ -18,6 +19,7 @@ WAIST = np.dtype(
         ("window_sum_mps2", np.float64),  # of the sizes of its forces
         ("peak_mps2", np.float64),  # highest since the last zero crossing, above the mean
         ("peak_at", np.int64),
+        ("passed_over", np.int64),  # peaks since the last step that came too early for one
         ("step_at", np.int64),  # peak of the last step
         ("step_s", np.float64),
         ("step_height_m", np.float64),
@@ -36,9 +38,4 @@ class WaistConfig(NamedTuple):
     peak_mps2: float = 0.5  # a lower one is no step
     least_period_s: float = 0.33
     longest_period_s: float = 1.1  # longer: the wearer stood in between
-    slope_m_per_hz: float = 0.4504
-    offset_m: float = -0.1656
-    least_hz: float = 1.35
-    most_hz: float = 2.45
-    outside_std: float = 0.5  # of a length at a frequency beyond the formula's range, or on stairs
-    stairs_m: float = 0.06  # by which a step rises or falls on them
+    usual: UsualSteps = UsualSteps()

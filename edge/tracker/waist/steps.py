@@ -11,6 +11,7 @@ from numba import njit
 
 from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.attitude import norm_of
+from edge.tracker.trunk.usual_steps import length_at
 from edge.tracker.waist.state import WaistConfig, WaistState
 
 NO_STEP = -1
@@ -33,6 +34,7 @@ def find_step(ring: Ring, state: WaistState, k: int, config: WaistConfig) -> int
         return NO_STEP
     since_s = ring[state.peak_at & mask].t_s - state.step_s
     if state.walking and since_s < config.least_period_s:
+        state.passed_over += 1
         return NO_STEP
     return int(state.peak_at)
 
@@ -57,12 +59,5 @@ def _slide(ring: Ring, state: WaistState, k: int, half_s: float) -> float:
 @njit()
 def step_length_m(period_s: float, config: WaistConfig) -> float:
     """Return the length of a step by its period: 0.4504 f - 0.1656, at the range's end beyond."""
-    frequency_hz = min(max(1.0 / period_s, config.least_hz), config.most_hz)
-    return config.slope_m_per_hz * frequency_hz + config.offset_m
-
-
-@njit()
-def length_std(period_s: float, rise_m: float, config: WaistConfig) -> float:
-    """Return the deviation of a step's length as a share of it; the formula is for level ways."""
-    within = config.least_hz <= 1.0 / period_s <= config.most_hz and abs(rise_m) < config.stairs_m
-    return config.trunk.length_std if within else config.outside_std
+    usual = config.usual
+    return length_at(min(max(1.0 / period_s, usual.least_hz), usual.most_hz), usual)

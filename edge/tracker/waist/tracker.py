@@ -25,8 +25,9 @@ from edge.tracker.trunk.dead_reckoning import (
 )
 from edge.tracker.trunk.follow import follow_sample
 from edge.tracker.trunk.kernel_tracker import KernelTracker, is_past, new_states, take_times
+from edge.tracker.trunk.usual_steps import is_usual, length_std
 from edge.tracker.waist.state import WAIST, WaistConfig, WaistState
-from edge.tracker.waist.steps import NO_STEP, find_step, length_std, step_length_m
+from edge.tracker.waist.steps import NO_STEP, find_step, step_length_m
 
 
 class WaistTracker(KernelTracker):
@@ -83,7 +84,7 @@ def _step(
         state.first_m = 0.0
         begin = state.step_at + 1
     else:
-        period_s = 1.0 / config.least_hz
+        period_s = 1.0 / config.usual.least_hz
         length_m = state.first_m = step_length_m(period_s, config)
         begin_walk(trunk, config.trunk)
         begin = min(trunk.released, peak_at)
@@ -94,7 +95,11 @@ def _step(
         from_n_m[i] = trunk.position_n_m[i]
     from_distance_m = trunk.distance_m
     mean_forward(ring, trunk, begin, peak_at, forward_n)
-    std = length_std(period_s, trunk.height_m - state.step_height_m, config)
+    rise_m = trunk.height_m - state.step_height_m
+    std, steps = config.trunk.length_std, 1 + state.passed_over
+    if not is_usual(steps, period_s, rise_m, config.usual):
+        std = length_std(steps, period_s, length_m, std, config.usual)
+    state.passed_over = 0
     take_step(trunk, length_m, std, forward_n, t_s, config.trunk)
     write_rows(ring, trunk, first, peak_at, from_n_m, from_distance_m, config.trunk)
     for k in range(peak_at + 1, trunk.walked):

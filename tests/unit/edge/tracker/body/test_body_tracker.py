@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from math import degrees, radians
 
 import numpy as np
@@ -57,6 +57,34 @@ def test_a_longer_and_a_stronger_step_go_further():
     )
     assert slow > usual
     assert strong > usual
+
+
+@pytest.mark.parametrize("step_s", [0.34, 0.9])
+def test_a_gait_that_is_no_usual_walk_is_doubted_by_the_way(step_s):
+    usual = tracked(imu(still(3.0), steps(40), still(3.0)))
+    other = tracked(imu(still(3.0), steps(40, step_s=step_s), still(3.0)))
+    assert std_by_way(other) > 3.0 * std_by_way(usual)
+
+
+def std_by_way(rows):
+    return np.sqrt(rows.position_cov_m2[-1, 0, 0]) / rows.distance_m[-1]
+
+
+def test_doubt_of_a_run_stays_when_a_walk_follows_it():
+    run = tracked(imu(still(3.0), steps(40, step_s=0.34)))
+    walk = tracked(imu(still(3.0), steps(40, step_s=0.34), steps(10), still(3.0)))
+    assert walk.position_cov_m2[-1, 0, 0] > run.position_cov_m2[-1, 0, 0]
+
+
+def test_stairs_are_doubted_and_a_barometer_slower_than_the_rest_keeps_up():
+    """17 cm a step; one pressure to ten samples."""
+    walk = imu(still(3.0), steps(30), still(3.0))
+    climbed_m = 0.17 * np.clip((walk.t_ns * 1e-9 - 3.0) / 0.55, 0.0, 30.0)
+    pressure_pa = 101_325.0 * np.exp(-climbed_m / 8434.0)
+    pressure_pa[np.arange(len(pressure_pa)) % 10 > 0] = np.nan
+    stairs, level = tracked(replace(walk, pressure_pa=pressure_pa)), tracked(walk)
+    assert std_by_way(stairs) > 3.0 * std_by_way(level)
+    assert stairs.position_n_m[-1, 2] == pytest.approx(-30 * 0.17, abs=0.4)
 
 
 def test_one_bump_is_no_walk():
