@@ -59,6 +59,7 @@ class Housekeeping:
         resources.disk.check.look(resources.recorder.segments())
         if not resources.config.standby.name:  # else it comes from the other station
             self._lost.look()
+        parts.outdated_copies.look()
         parts.restarts.restart_if_stale()
         self._requests.look()
         self._imports.look()

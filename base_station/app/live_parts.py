@@ -9,6 +9,7 @@ from base_station.app.live_state import LiveState
 from base_station.app.resources import Resources
 from base_station.app.restart_control import RestartControl
 from base_station.app.unit_reports import UnitReports
+from base_station.archive.outdated_copies import OutdatedCopies
 from base_station.engine.engine import StationEngine
 from base_station.engine.ports import EngineGate
 from base_station.engine.rate_limiter import SenderRateLimiter
@@ -37,6 +38,7 @@ class LiveParts:
     engine: StationEngine
     gate: EngineGate  # before the engine
     erasures: ErasureQueue
+    outdated_copies: OutdatedCopies
     plans: PlanReader
     replays: ReplayProcesses
     post_processor: PostProcessingProcess

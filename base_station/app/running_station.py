@@ -22,6 +22,7 @@ from base_station.app.restart_control import Restart, RestartControl
 from base_station.app.start_engine import start_drive
 from base_station.app.startup_console import Watch, serve_while_recovering, startup_application
 from base_station.app.unit_reports import UnitReports
+from base_station.archive.outdated_copies import OutdatedCopies
 from base_station.core.alarms.thresholds import Thresholds
 from base_station.core.state import StationState
 from base_station.engine.engine import StationEngine
@@ -42,10 +43,12 @@ from base_station.replay.processes.server import ReplayProcesses
 from base_station.site.plan_reader import PlanReader
 from base_station.standby.erasure_handover import WaitingErasure
 from base_station.standby.mode import HaMode, Paired, Parts, Standalone
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.unit_sync.clock_server import ClockServer
 from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.views.station import StationFacts
+from base_station.views.wire import ArchiveView
 from shared.bus import Subscription
 from shared.channels import ROOT, clock_key
 from shared.header_factory import HeaderFactory
@@ -92,6 +95,9 @@ class RunningStation:
         self._shown = LiveFanOut(resources.hub, self._forwarders)
         self._downlink = self._new_downlink()
         self._archive = automatic_archive(resources, self._replays, self._is_leader)
+        self._outdated = OutdatedCopies(
+            ArchivedCopies(self._disk.store), self._archive_view, self._is_leader
+        )
         self._radio = self._new_radio()
         self._erasures = self._new_erasure_queue()
         self._plans = PlanReader()
@@ -243,6 +249,7 @@ class RunningStation:
             engine=self._engine,
             gate=self._gate,
             erasures=self._erasures,
+            outdated_copies=self._outdated,
             plans=self._plans,
             replays=self._replays,
             post_processor=self._post_processor,
@@ -306,6 +313,7 @@ class RunningStation:
         others = (
             *(self._erasures, self._disk.check, self._restarts.stale, self._crashes),
             self._radio,
+            self._outdated,
             *(() if self._archive is None else (self._archive,)),
         )
         return health_facts(
@@ -316,8 +324,11 @@ class RunningStation:
             missing=self._reports.backfill.gone,
             forwarders=self._forwarders.views(),
             radio=self._radio.views(),
-            archive=None if self._archive is None else self._archive.view(),
+            archive=self._archive_view(),
         )
+
+    def _archive_view(self) -> ArchiveView | None:
+        return None if self._archive is None else self._archive.view()
 
     def _keeps_audio_since_ns(self) -> int | None:
         return None if self._archive is None else self._archive.keeps_audio_since_ns()

@@ -88,7 +88,8 @@ class BucketStore:
 
     def names(self, beginning: str = "") -> Sequence[str]:
         with self._asking("what is in it cannot be read"):
-            pages = obstore.list(self._store)
+            folder = beginning.rpartition("/")[0]
+            pages = obstore.list(self._store, folder or None)
             return sorted(
                 one["path"] for page in pages for one in page if one["path"].startswith(beginning)
             )

@@ -10,6 +10,7 @@ from base_station.archive.entry import (
     LOG_NAME,
     CatalogueEntry,
     archived_ids,
+    leftovers,
     name_in_archive,
     require_entry,
     unfinished_ids,
@@ -34,6 +35,11 @@ def defects_of(
     ids = archived_ids(store)
     for number, incident_id in enumerate(ids):
         entry = require_entry(store, incident_id)
+        if left := leftovers(store, entry):
+            yield (
+                incident_id,
+                f"has files of an earlier copy ({', '.join(left)}): copy it once more",
+            )
         for file in entry.files:
             defect = defect_of(store, entry, file)
             if defect:
@@ -43,7 +49,7 @@ def defects_of(
 
 def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
     """Fault of a file in words, after reading all of it; empty: none."""
-    name = name_in_archive(entry.incident_id, file.name)
+    name = name_in_archive(entry.incident_id, file.stored_name)
     size = store.size(name)
     if size != file.size_bytes:
         there = "is missing" if size is None else f"has {size} bytes"
@@ -80,6 +86,6 @@ def fetch_log(
 
 
 def parts_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> Iterator[bytes]:
-    name = name_in_archive(entry.incident_id, file.name)
+    name = name_in_archive(entry.incident_id, file.stored_name)
     for begin in range(0, file.size_bytes, _PART_BYTES):
         yield store.read(name, begin, min(begin + _PART_BYTES, file.size_bytes))

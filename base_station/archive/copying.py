@@ -20,8 +20,16 @@ from base_station.archive.entry import (
     VERSION,
     CatalogueEntry,
     encoded_entry,
+    leftovers,
     name_in_archive,
     read_entry,
+    stored_apart,
+)
+from base_station.archive.redacted_copy import (
+    CopyIncompleteError,
+    ErasedSubjects,
+    erased_in,
+    redacted_log,
 )
 from base_station.archive.store import ArchiveStore
 from base_station.core.state import ERASED_TEXT
@@ -30,11 +38,12 @@ from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import AFTER_NS, IncidentFileSource, incident_file
 from base_station.storage.db.archived import ArchivedCopies, ArchivedFile
 from base_station.storage.db.database import Database
+from base_station.storage.db.erasures_done import erasures_done
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.incident_rows import rows_of_incident
 from base_station.storage.db.incident_search import IncidentSearch
 from base_station.storage.db.known_people import KnownPerson
-from base_station.storage.db.models import IncidentRow
+from base_station.storage.db.models import OUTDATED_NS, IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.search_index import ALARM, PERSON
@@ -70,6 +79,17 @@ class CopyResult:
     incident_id: str
     size_bytes: int  # that were sent; 0: the archive had it already
     damage: tuple[str, ...]  # unreadable parts of the station's log
+
+
+@dataclass(frozen=True)
+class _CopySource:
+    """Sources of a copy."""
+
+    log: FolderFeed
+    radio: RadioLog | None  # None: the log has the audio, or there is none
+    known_ns: int  # station time of the newest that is known
+    has_radio: bool
+    damage: tuple[str, ...] = ()  # that is known of it
 
 
 class _LogGoneError(ArchiveError):
@@ -113,30 +133,68 @@ class ArchiveCopier:
 
     def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
         """``known_ns``: station time of the newest that is known of it."""
+        erased = erasures_done(self._store)  # before anything is read that they change
         there = read_entry(self._archive, incident.incident_id)
-        if there is not None and there.log_id not in ("", self._log.log_id):
+        own_id = self._log.log_id  # empty where all segments are gone
+        if there is not None and own_id and there.log_id not in ("", own_id):
             raise ArchiveError(
                 f"the archive {self._archive.address} has a copy of {incident.incident_id} of "
                 "another station: give each station a place of its own in it"
             )
         if there is not None and self._is_current(there, incident, known_ns):
-            self._note(there)
-            return CopyResult(incident.incident_id, 0, there.damage)
-        if there is not None and not self._has_log(incident):
-            raise _LogGoneError(
-                f"{incident.incident_id} has newer data than its copy in {self._archive.address}, "
-                "or a person was forgotten since, and parts of its log are not here any more: the "
-                "copy stays as it is. Bring the missing segments back into the log, or remove the "
-                "copy where nobody may keep it"
-            )
+            return self._keep(there)
         with TemporaryDirectory(prefix="muster-archive-") as scratch:
-            entry = self._pack(incident, known_ns, Path(scratch))
-            if there is not None:  # a copy that is cut short from here on does not count
-                self._archive.remove(name_in_archive(incident.incident_id, ENTRY_NAME))
+            source = _CopySource(
+                self._log, self._radio, known_ns, has_radio=self._radio is not None
+            )
+            if there is not None and not self._has_log(incident):
+                subjects = erased_in(self._archive, there, self._store)
+                if not subjects and self._copies.is_outdated_by_erasure(incident.incident_id):
+                    return self._keep(there)  # it has none of those who were erased
+                if not subjects:
+                    raise _LogGoneError(
+                        f"{incident.incident_id} has newer data than its copy in "
+                        f"{self._archive.address}, and parts of its log are not here any more: the "
+                        "copy stays as it is. Bring the missing segments back into the log"
+                    )
+                source = self._redacted(there, subjects, Path(scratch))
+            entry = self._pack(incident, source, Path(scratch))
+            if source.log is not self._log and (lost := {*entry.damage} - {*source.damage}):
+                raise ArchiveError(
+                    f"the copy of {incident.incident_id} in {self._archive.address} cannot be made "
+                    f"anew, and stays as it is: {'; '.join(sorted(lost))}"
+                )
+            if there is not None:
+                entry = stored_apart(entry)
             self._send(entry, Path(scratch))
-        self._note(entry)
+        self._remove_leftovers(entry)
+        if erasures_done(self._store) == erased:
+            self._note(entry)
+        else:
+            self._note(msgspec.structs.replace(entry, known_ns=OUTDATED_NS))
         size_bytes = sum(one.size_bytes for one in entry.files)
         return CopyResult(incident.incident_id, size_bytes, entry.damage)
+
+    def _keep(self, there: CatalogueEntry) -> CopyResult:
+        self._remove_leftovers(there)
+        self._note(there)
+        return CopyResult(there.incident_id, 0, there.damage)
+
+    def _redacted(
+        self, there: CatalogueEntry, subjects: ErasedSubjects, scratch: Path
+    ) -> _CopySource:
+        """The copy itself; what is known since is not in it."""
+        try:
+            log = redacted_log(self._archive, there, subjects, scratch / "redacted")
+        except CopyIncompleteError as error:
+            raise _LogGoneError(str(error)) from error
+        has_radio = any(one.name == RADIO_NAME for one in there.files)
+        return _CopySource(log, None, there.known_ns, has_radio=has_radio, damage=there.damage)
+
+    def _remove_leftovers(self, entry: CatalogueEntry) -> None:
+        """Remove the files of the copy that this one has replaced."""
+        for name in leftovers(self._archive, entry):
+            self._archive.remove(name)
 
     def _is_current(self, entry: CatalogueEntry, incident: IncidentRow, known_ns: int) -> bool:
         """A copy that this database lost sight of; not one from before a person was forgotten."""
@@ -145,8 +203,23 @@ class ArchiveCopier:
             entry.known_ns == known_ns
             and (self._radio is None or RADIO_NAME in {one.name for one in entry.files})
             and entry.people == here
-            and not any(defect_of(self._archive, entry, one) for one in entry.files)
+            and not erased_in(self._archive, entry, self._store)
+            and (self._is_noted(entry) or not self._has_defects(entry))
         )
+
+    def _is_noted(self, entry: CatalogueEntry) -> bool:
+        """True where these files were read back when they were written, and only an erasure has
+        outdated that.
+        """
+        if not self._copies.is_outdated_by_erasure(entry.incident_id):
+            return False
+        noted = self._copies.files(entry.incident_id).values()
+        return {(one.name, one.sha256) for one in noted} == {
+            (one.name, one.sha256) for one in entry.files
+        }
+
+    def _has_defects(self, entry: CatalogueEntry) -> bool:
+        return any(defect_of(self._archive, entry, one) for one in entry.files)
 
     def _has_log(self, incident: IncidentRow) -> bool:
         """True if all segments of its time are here; where the database knows of none, a record."""
@@ -168,7 +241,7 @@ class ArchiveCopier:
     def _send(self, entry: CatalogueEntry, scratch: Path) -> None:
         """The entry goes last, when all was read there: a copy that is cut short has none."""
         for one in entry.files:
-            name = name_in_archive(entry.incident_id, one.name)
+            name = name_in_archive(entry.incident_id, one.stored_name)
             self._archive.put(name, scratch / one.name)
         for one in entry.files:
             if defect := defect_of(self._archive, entry, one):
@@ -179,29 +252,29 @@ class ArchiveCopier:
         (scratch / ENTRY_NAME).write_bytes(encoded_entry(entry))
         self._archive.put(name_in_archive(entry.incident_id, ENTRY_NAME), scratch / ENTRY_NAME)
 
-    def _pack(self, incident: IncidentRow, known_ns: int, scratch: Path) -> CatalogueEntry:
+    def _pack(self, incident: IncidentRow, source: _CopySource, scratch: Path) -> CatalogueEntry:
         """Make the files of a copy, and its entry."""
         damage: list[str] = []
         records, roster = Records(self._store, self._clock), Roster(self._store, self._clock)
         people = self._mentioned(incident)
         closed_ns = incident.closed_ns or 0
-        source = IncidentFileSource(
-            log=self._log,
+        contents = IncidentFileSource(
+            log=source.log,
             incident=incident,
             name=roster.shown(incident.name),
             people=roster.known_people(),
             plan=records.plan(closed_ns, incident.site_id),
             until_ns=closed_ns,
             imports=self._imports.attachments(incident.incident_id),
-            radio=self._radio,
+            radio=source.radio,
             report=damage.append,
         )
         with (scratch / LOG_NAME).open("wb") as file:
-            file.writelines(incident_file(source))
+            file.writelines(incident_file(contents))
         names = [CONSOLE_NAME, LOG_NAME]
-        write_topics(scratch / LOG_NAME, scratch / CONSOLE_NAME, self._log.log_id, is_console)
-        if self._radio is not None:
-            write_topics(scratch / LOG_NAME, scratch / RADIO_NAME, self._log.log_id, _is_audio)
+        write_topics(scratch / LOG_NAME, scratch / CONSOLE_NAME, source.log.log_id, is_console)
+        if source.has_radio:
+            write_topics(scratch / LOG_NAME, scratch / RADIO_NAME, source.log.log_id, _is_audio)
             names.append(RADIO_NAME)
         dispatch = records.dispatch(incident.dispatch_number) if incident.dispatch_number else None
         terms = IncidentSearch(self._store).terms(incident.incident_id)
@@ -212,9 +285,9 @@ class ArchiveCopier:
             name=roster.shown(incident.name),
             opened_ns=incident.opened_ns,
             closed_ns=closed_ns,
-            known_ns=known_ns,
+            known_ns=source.known_ns,
             archived_ns=self._clock.utc_ns(),
-            log_id=self._log.log_id,
+            log_id=source.log.log_id,
             address="" if dispatch is None else dispatch.address,
             people=people,
             alarm_rules=tuple(sorted(terms.get(ALARM, ()))),
@@ -224,7 +297,7 @@ class ArchiveCopier:
                 for name, one in enclosures_of(scratch / LOG_NAME).attachments.items()
             },
             tables=rows_of_incident(self._store, incident),
-            damage=tuple(damage),
+            damage=(*source.damage, *damage),
         )
 
     def _mentioned(self, incident: IncidentRow) -> dict[str, KnownPerson]:

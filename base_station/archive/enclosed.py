@@ -33,7 +33,7 @@ class ArchivedImports(ImportFolder):
         return path
 
     def _parts(self, begin: int, end: int) -> Iterator[bytes]:
-        name = name_in_archive(self._entry.incident_id, LOG_NAME)
+        name = name_in_archive(self._entry.incident_id, self._entry.file(LOG_NAME).stored_name)
         for at in range(begin, end, _PART_BYTES):
             yield self._store.read(name, at, min(at + _PART_BYTES, end))
 

@@ -1,11 +1,13 @@
 """Entry of an incident in an archive: the file ``catalogue.json`` beside the copy.
 
-It is written last: a copy without it was cut short, and is made again.
+It is written last: a copy without it was cut short, and is made again.  A copy that replaces one
+has files of other names, so that writing the entry exchanges all of it at once.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import msgspec
 
@@ -53,6 +55,23 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
 
 def name_in_archive(incident_id: str, name: str) -> str:
     return f"{incident_id}/{name}"
+
+
+def stored_apart(entry: CatalogueEntry) -> CatalogueEntry:
+    """With files that do not replace those of the copy that is there."""
+    files = []
+    for one in entry.files:
+        path = Path(one.name)
+        stored_as = f"{path.stem}-{one.sha256[:16]}{path.suffix}"
+        files.append(msgspec.structs.replace(one, stored_as=stored_as))
+    return msgspec.structs.replace(entry, files=tuple(files))
+
+
+def leftovers(store: ArchiveStore, entry: CatalogueEntry) -> Sequence[str]:
+    """Files of an earlier copy of the incident that are still beside this one."""
+    own = {name_in_archive(entry.incident_id, one.stored_name) for one in entry.files}
+    own.add(name_in_archive(entry.incident_id, ENTRY_NAME))
+    return [one for one in store.names(f"{entry.incident_id}/") if one not in own]
 
 
 def encoded_entry(entry: CatalogueEntry) -> bytes:

@@ -84,7 +84,7 @@ class ArchivedFeed(LogFeed):
 
 
 def _ranged(store: ArchiveStore, incident_id: str, file: ArchivedFile) -> RangedSegmentFile:
-    name = name_in_archive(incident_id, file.name)
+    name = name_in_archive(incident_id, file.stored_name)
 
     def fetch(begin: int, end: int) -> bytes:
         return store.read(name, begin, end)

@@ -117,7 +117,11 @@ class FolderStore:
         with self._asking("what is in it cannot be read"):
             if not self._folder.is_dir():
                 raise FileNotFoundError(2, "there is no such folder")
-            files = (one for one in self._folder.rglob("*") if one.is_file())
+            files = (
+                one
+                for one in (self._folder / beginning.rpartition("/")[0]).rglob("*")
+                if one.is_file()
+            )
             names = (one.relative_to(self._folder).as_posix() for one in files)
             return sorted(one for one in names if one.startswith(beginning))
 

@@ -15,6 +15,8 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Protocol
 
+import msgspec
+
 from base_station.core.erasure.erasure import (
     Erasure,
     actions_of,
@@ -42,6 +44,7 @@ from base_station.storage.db.erasure import (
     erased_incidents,
     forget_in,
     known_names,
+    wearings_of,
 )
 from base_station.storage.db.records import Records
 from base_station.storage.imports import ImportFolder
@@ -176,7 +179,17 @@ class ErasureService:
         has_older = has_names(one for _, one in actions_of(everywhere))
         until_ns = self._clock.utc_ns() if order is None else order.t_ns
         found = erasure_of_person(actions, person_id, names if has_older else (), until_ns)
+        if not self._reading.is_whole():
+            found = self._with_lost_wearings(found, until_ns)
         return found, bool(found.wearings or names)
+
+    def _with_lost_wearings(self, found: Erasure, until_ns: int) -> Erasure:
+        """With the times that only the tables know, where a part of the log is gone."""
+        with self._store.read() as session:
+            known = wearings_of(session, found.person_id, until_ns)
+        wearings = {*found.wearings, *known}
+        in_order = sorted(wearings, key=lambda one: (one.from_ns, one.unit_id, one.until_ns))
+        return msgspec.structs.replace(found, wearings=tuple(in_order))
 
     def _erasure_of_incident(self, incident_id: str, order: ErasureOrder | None) -> Erasure:
         actions = actions_before(self._reading.actions(), order)

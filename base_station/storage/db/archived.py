@@ -10,6 +10,7 @@ from sqlalchemy import ColumnElement, and_, delete, exists, func, or_, select
 from base_station.storage.db.database import Database
 from base_station.storage.db.incident_search import IncidentSearch
 from base_station.storage.db.models import (
+    OUTDATED_NS,
     ArchivedIncident,
     ArchivedObject,
     ArchivedRange,
@@ -29,6 +30,11 @@ class ArchivedFile(msgspec.Struct, frozen=True):
     summary_offset: int
     topics: tuple[str, ...]
     ranges: tuple[tuple[int, int, int, int], ...]  # from, until (log time, ns), offset, end
+    stored_as: str = ""  # name in the archive; empty: ``name``
+
+    @property
+    def stored_name(self) -> str:
+        return self.stored_as or self.name
 
     @property
     def segment_ranges(self) -> SegmentRanges:
@@ -80,6 +86,21 @@ class ArchivedCopies:
             )
             for file in files:
                 session.add_all(_rows(incident_id, file))
+
+    def is_outdated_by_erasure(self, incident_id: str) -> bool:
+        with self._store.read() as session:
+            row = session.get(ArchivedIncident, incident_id)
+            return row is not None and row.known_ns == OUTDATED_NS
+
+    def outdated_by_erasure(self) -> dict[str, int]:
+        """By the address of an archive, how many of its copies may have people who were erased."""
+        wanted = (
+            select(ArchivedIncident.archive, func.count().label("copies"))
+            .where(ArchivedIncident.known_ns == OUTDATED_NS)
+            .group_by(ArchivedIncident.archive)
+        )
+        with self._store.read() as session:
+            return {one.archive: one.copies for one in session.execute(wanted)}
 
     def oldest_waiting_ns(self, archive: str) -> int | None:
         """Opening time of the oldest incident that is open, or of which the archive has no current

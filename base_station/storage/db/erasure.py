@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection
 
 import msgspec
-from sqlalchemy import ColumnElement, and_, delete, or_, select, update
+from sqlalchemy import ColumnElement, and_, delete, func, or_, select, update
 from sqlalchemy.orm import Session
 
 from base_station.core.erasure.erasure import (
@@ -21,6 +21,7 @@ from base_station.core.erasure.redaction import remaining_text, without_note, wi
 from base_station.core.person_references import name_pattern, without_people
 from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.models import (
+    OUTDATED_NS,
     AlarmRow,
     AlarmTransition,
     ArchivedIncident,
@@ -60,6 +61,7 @@ _NAMED = AuditEntry.action.in_(
     ("AddedPerson", "ChangedPerson")
 )  # "ID", or by an older version "ID NAME"
 _PLACED_NS = re.compile(r'"t_ns":(\d+)')  # the time of which a place is
+_BESIDE_NS = 60 * 10**9  # what was recorded so long before and after an incident is in its copy
 _ERASED_PERSON = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
@@ -103,6 +105,7 @@ def _delete_computed_results(session: Session, erasure: Erasure) -> None:
     """Delete results that were computed from incidents of an erased person; they can be computed
     again.
     """
+    _outdate_copies(session, erasure)
     spans = [(one.from_ns, one.until_ns) for one in erasure.wearings]
     for incident in session.scalars(select(IncidentRow)).all():
         until_ns = incident.closed_ns or FOREVER_NS
@@ -112,11 +115,20 @@ def _delete_computed_results(session: Session, erasure: Erasure) -> None:
                 *(SearchTerm, IndexedIncident),
             ):
                 session.execute(delete(table).where(table.incident_id == incident.incident_id))
-            session.execute(  # its copy is made again
-                update(ArchivedIncident)
-                .where(ArchivedIncident.incident_id == incident.incident_id)
-                .values(known_ns=0)
-            )
+
+
+def _outdate_copies(session: Session, erasure: Erasure) -> None:
+    """Have copies made anew that may have the people: of a person all, as any may mention them (the
+    copying finds out which do); of an incident those of its time.
+    """
+    outdated = update(ArchivedIncident).values(known_ns=OUTDATED_NS)
+    if not erasure.person_id:
+        beside = select(IncidentRow.incident_id).where(
+            IncidentRow.opened_ns < erasure.until_ns + _BESIDE_NS,
+            func.coalesce(IncidentRow.closed_ns, FOREVER_NS) > erasure.from_ns - _BESIDE_NS,
+        )
+        outdated = outdated.where(ArchivedIncident.incident_id.in_(beside))
+    session.execute(outdated)
 
 
 def known_names(session: Session, person_id: str) -> set[str]:
@@ -129,6 +141,17 @@ def known_names(session: Session, person_id: str) -> set[str]:
     details = session.scalars(select(AuditEntry.detail).where(_NAMED, mine))
     names |= {detail.removeprefix(f"{person_id} ") for detail in details}
     return names - {ERASED_TEXT, ""}
+
+
+def wearings_of(session: Session, person_id: str, until_ns: int) -> list[Wearing]:
+    """Times in which the person wore a unit, before a station time."""
+    worn = select(Assignment).where(
+        Assignment.person_id == person_id, Assignment.from_ns < until_ns
+    )
+    return [
+        Wearing(one.unit_id, one.from_ns, min(one.until_ns or until_ns, until_ns))
+        for one in session.scalars(worn)
+    ]
 
 
 def erased_detail(incident_id: str) -> str:

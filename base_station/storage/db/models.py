@@ -132,6 +132,9 @@ class AuditEntry(Base):
     detail: Mapped[str]
 
 
+OUTDATED_NS = 0  # ``known_ns`` of a copy that an erasure has outdated
+
+
 class ArchivedIncident(Base):
     """A copy of an incident in an archive; the archive has this and what follows as a file, too."""
 

@@ -56,6 +56,12 @@ export const problem: Part<"problem"> = {
     "Mehrere Rechner melden sich als {station}: {hosts}. Die Personen aller werden gezeigt; jeder Station eine eigene Anmeldung geben und diese sperren",
   "department-station-clock":
     "Die Uhr von {station} geht gegenüber der Dienststelle {off_s} {side, select, ahead {vor} other {nach}}: Zeiten werden nach der Uhr der Dienststelle gezeigt; die falsche stellen",
+  "erased-in-archive":
+    "{count, plural, one {# Kopie} other {# Kopien}} im Archiv {archive} vielleicht mit gelöschten Personen; neue werden angelegt",
+  "erased-in-archive-away":
+    "{count, plural, one {# Kopie} other {# Kopien}} im Archiv {archive} vielleicht mit gelöschten Personen; neue werden später angelegt: {reason}",
+  "erased-in-other-archive":
+    "{count, plural, one {# Kopie} other {# Kopien}} im Archiv {archive} vielleicht mit gelöschten Personen, und die Station kopiert nicht dorthin: muster base archive copy {archive} ausführen",
   "erasure-under-way":
     "Die Aufzeichnung wird neu geschrieben, um {kind, select, person {eine Person} incident {einen Einsatz} other {{kind}}} zu löschen ({share_fraction}), wie von {by} gewünscht",
   "erasure-waits":

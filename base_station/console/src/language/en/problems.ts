@@ -54,6 +54,12 @@ export const problem = {
     "Several machines report as {station}: {hosts}. The people of all are shown; give each station an enrolment of its own, and revoke this one",
   "department-station-clock":
     "The clock of {station} is {off_s} {side, select, ahead {ahead of} other {behind}} the department’s: times are shown by the department’s clock; set the one that is wrong",
+  "erased-in-archive":
+    "{count, plural, one {# copy} other {# copies}} in the archive {archive} may have people who were erased; they are being made anew",
+  "erased-in-archive-away":
+    "{count, plural, one {# copy} other {# copies}} in the archive {archive} may have people who were erased; they are made anew later: {reason}",
+  "erased-in-other-archive":
+    "{count, plural, one {# copy} other {# copies}} in the archive {archive} may have people who were erased, and the station does not copy there: give muster base archive copy {archive}",
   "erasure-under-way":
     "The log is being written anew to forget {kind, select, person {a person} incident {an incident} other {a {kind}}} ({share_fraction}), as {by} wished",
   "erasure-waits":

@@ -56,6 +56,12 @@ export const problem: Part<"problem"> = {
     "Plusieurs machines se présentent comme {station} : {hosts}. Les personnes de toutes sont affichées ; donner à chaque station son propre enrôlement, et révoquer celui-ci",
   "department-station-clock":
     "L’horloge de {station} {side, select, ahead {avance} other {retarde}} de {off_s} sur celle du service : les heures sont affichées selon l’horloge du service ; régler celle qui est fausse",
+  "erased-in-archive":
+    "{count, plural, one {# copie} other {# copies}} dans l’archive {archive}, peut-être avec des personnes oubliées ; cela est refait",
+  "erased-in-archive-away":
+    "{count, plural, one {# copie} other {# copies}} dans l’archive {archive}, peut-être avec des personnes oubliées ; cela sera refait plus tard : {reason}",
+  "erased-in-other-archive":
+    "{count, plural, one {# copie} other {# copies}} dans l’archive {archive}, peut-être avec des personnes oubliées, et la station n’y copie pas : lancer muster base archive copy {archive}",
   "erasure-under-way":
     "Le journal est réécrit pour oublier {kind, select, person {une personne} incident {une intervention} other {{kind}}} ({share_fraction}), à la demande de {by}",
   "erasure-waits":
