@@ -36,7 +36,7 @@ class Housekeeping:
         self._older = OlderAssignments(disk.roster, parts.gate)
         self._services = services
         self._imports = ImportRequests(disk.folder, self._act_on_import)
-        self._requests = ErasureRequests(
+        self._erasures = ErasureRequests(
             disk.folder, partial(accept_from_command, services, FORGET_COMMAND)
         )
         retention = parts.resources.config.retention
@@ -61,8 +61,8 @@ class Housekeeping:
             self._lost.look()
         parts.outdated_copies.look()
         parts.restarts.restart_if_stale()
-        self._requests.look()
-        self._imports.look()
+        self._erasures.answer_pending()
+        self._imports.answer_pending()
         resources.presence.update()
         resources.console_presence.update()
         parts.replays.end_idle()

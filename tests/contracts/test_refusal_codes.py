@@ -30,13 +30,13 @@ _NOT_OF_THE_API = (
     "base_station/api/server.py",
     # Commands at the station's machine.
     "base_station/api/routes/forgetting.py:accept_from_command",
-    "base_station/importers/requests.py",
     "base_station/privacy/erasure_queue.py:erase_now",
     "base_station/security/pki/folder.py:create",
     "base_station/security/pki/folder.py:_require_same_station",
     "base_station/security/pki/hosts.py",
     "base_station/security/pki/station_enrolment.py",
     "base_station/storage/data_folder.py",
+    "base_station/storage/request_files.py",
     # Answers to programs that post samples, dispatches or alerts.
     "base_station/api/posted_samples.py",
     "base_station/api/routes/dispatch.py:post_alert",

@@ -54,6 +54,6 @@ def test_invalid_request_is_answered_and_removed(tmp_path: Path) -> None:
         raise AssertionError((kind, subject_id))
 
     requests = ErasureRequests(folder, accept)  # type: ignore[arg-type]
-    requests.look()
+    requests.answer_pending()
     assert not request.exists()
-    requests.look()
+    requests.answer_pending()

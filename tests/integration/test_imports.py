@@ -22,6 +22,7 @@ from base_station.core.person_references import reference_to
 from base_station.importers import requests
 from base_station.importers.interface import MOST_BYTES
 from base_station.importers.requests import ImportAction, ImportRequests
+from base_station.storage import request_files
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.records import Records
@@ -254,7 +255,7 @@ def test_incident_of_another_station_and_a_track_are_stored(
 
 def answer(station: ImportRequests, waiting: threading.Thread) -> None:
     def is_answered() -> bool:
-        station.look()
+        station.answer_pending()
         return not waiting.is_alive()
 
     until(is_answered, "an answer")
@@ -288,8 +289,8 @@ def test_running_station_logs_the_import_of_a_command(
     answer(refusing, waiting)
     assert refusals == ["this is the standby"]
     (tmp_path / "import-request.json").write_text("{")
-    refusing.look()
+    refusing.answer_pending()
     assert not list(tmp_path.iterdir())
-    monkeypatch.setattr(requests, "ANSWERED_WITHIN_S", 0.0)
+    monkeypatch.setattr(request_files, "ANSWERED_WITHIN_S", 0.0)
     with pytest.raises(UserError, match="does not answer"):
         requests.request_action(folder, removal)

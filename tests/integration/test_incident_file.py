@@ -18,7 +18,6 @@ from base_station.app.factories import project_whole_log
 from base_station.cli import app
 from base_station.core.person_references import reference_to
 from base_station.replay.incident_file import read_incident_file
-from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
@@ -40,13 +39,8 @@ from shared.messages.station import (
     SetThresholds,
     Unassign,
 )
+from tests.rig.archived_station import PEOPLE
 from tests.rig.round_walk import PLAN, Walk
-
-PEOPLE = {
-    "ada0": KnownPerson("Ada", "Engine 1", "officer"),
-    "bo00": KnownPerson("Bo", "Engine 1", ""),
-    "cy00": KnownPerson("Cy", "Engine 2", ""),
-}
 
 
 @pytest.fixture(scope="module")

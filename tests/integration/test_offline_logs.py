@@ -33,11 +33,11 @@ from shared.mcap_log import (
     segment_paths,
 )
 from shared.messages.station import CloseIncident, OpenIncident
+from tests.rig.logged_walk import logged, north
 from tests.rig.round_walk import Walk
 from tests.rig.station_command import Command, CommandByModes
 from tests.rig.station_script import Record, Script
 from tests.rig.waiting import PATIENCE_S, until
-from tests.unit.base_station.replay.test_version_check import logged, north
 
 POLICY = SegmentPolicy(segment_s=60.0)
 

@@ -9,6 +9,7 @@ from typer.testing import CliRunner, Result
 
 from base_station.app.factories import project_whole_log
 from base_station.cli import app
+from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
 from shared.clock import SystemClock
@@ -16,11 +17,15 @@ from shared.errors import ArchiveError, ConfigError, UserError
 from shared.mcap_log import SegmentPolicy, SegmentWriter
 from shared.messages import EventKind
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetPlan
-from tests.integration.test_incident_file import PEOPLE
 from tests.rig.console_log import with_console
 from tests.rig.live_station import make_pipeline
 from tests.rig.round_walk import PLAN, Walk
 
+PEOPLE = {
+    "ada0": KnownPerson("Ada", "Engine 1", "officer"),
+    "bo00": KnownPerson("Bo", "Engine 1", ""),
+    "cy00": KnownPerson("Cy", "Engine 2", ""),
+}
 WALKED_S = 400  # three keyframes
 
 

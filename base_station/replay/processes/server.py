@@ -15,7 +15,6 @@ import sys
 import time
 from collections.abc import Callable
 from threading import Lock
-from types import TracebackType
 
 from base_station.replay.processes.wire import FrameChannel, Job
 from shared.coded_text import coded
@@ -43,12 +42,7 @@ class ReplayProcesses:
     def __enter__(self) -> ReplayProcesses:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def start(self, job: Job) -> FrameChannel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -16,8 +16,7 @@ from base_station.core.events import Received, event_of
 from base_station.replay.playback import Archive, Decision, Playback, Record
 from base_station.replay.version_check import VersionCheck, decisions_differ
 from base_station.storage.checkpoints import Checkpoints
-from shared.channels import OPERATOR, channel_of
-from shared.codec import encode
+from shared.channels import OPERATOR
 from shared.messages import (
     STATION_ID,
     AlarmChange,
@@ -27,32 +26,8 @@ from shared.messages import (
 )
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
 from tests.rig.live_station import make_pipeline
-from tests.rig.logged_walk import walk_with_mayday
+from tests.rig.logged_walk import Change, logged, north, walk_with_mayday
 from tests.rig.station_script import Script
-
-Change = Callable[[Decision], Decision]
-
-
-def logged(
-    change: Change = lambda decision: decision, records: Iterable[Record] | None = None
-) -> Iterator[Record]:
-    """Records with the decisions that follow from them."""
-    pipeline = make_pipeline()
-    for t_ns, key, payload in records or walk_with_mayday():
-        yield t_ns, key, payload
-        for output in pipeline.step(event_of(t_ns, key, payload)):
-            if isinstance(output, Decision):
-                reported = change(output)
-                yield t_ns, channel_of(reported).key(STATION_ID), encode(reported)
-
-
-def north(by_m: float) -> Change:
-    def move(decision: Decision) -> Decision:
-        if isinstance(decision, FusedPosition) and decision.north_m > 50.0:
-            return msgspec.structs.replace(decision, north_m=decision.north_m + by_m)
-        return decision
-
-    return move
 
 
 def named(decision: Decision) -> Decision:

@@ -30,10 +30,9 @@ from shared.clock import NS_PER_MS, NS_PER_S
 from shared.errors import UserError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, segment_paths
 from tests.rig.live_station import Screen
-from tests.rig.logged_walk import DURATION_S, MAYDAY_S, walk_with_mayday
+from tests.rig.logged_walk import DURATION_S, MAYDAY_S, logged, north, walk_with_mayday
 from tests.rig.station_script import START_NS
 from tests.rig.waiting import until
-from tests.unit.base_station.replay.test_version_check import logged, north
 
 pytestmark = pytest.mark.slow
 
