@@ -88,8 +88,8 @@ class LogReading:
     def is_whole(self) -> bool:
         """True where no segment of the log is missing, and the first is there."""
         segments = self._log.complete_segments()
-        first = min(map(segment_number, segments), default=1)
-        return first <= 1 and not missing_segments(segments)
+        first = min(map(segment_number, segments), default=None)
+        return first is not None and first <= 1 and not missing_segments(segments)
 
     def first_message_ns(self, actions: Iterable[Record]) -> dict[str, int]:
         """Times of the first messages by unit, of units received before they were registered: such

@@ -67,6 +67,12 @@ def test_log_without_one_of_its_segments_is_not_whole(data: DataFolder, lost: in
     assert not reading.is_whole()
 
 
+def test_log_without_any_segment_is_not_whole(data: DataFolder) -> None:
+    for path in segment_paths(data.log):
+        path.unlink()
+    assert not LogReading(ClosedLog(data.log)).is_whole()
+
+
 def test_logs_set_aside_are_found_and_recordings_are_not(data: DataFolder) -> None:
     reading = LogReading(ClosedLog(data.log))
     assert reading.set_aside() == []
