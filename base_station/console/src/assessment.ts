@@ -1,5 +1,5 @@
 /** The assessment of an incident's positions, in words and usual units.  Pure. */
-import { knownLabel, t } from "./language/translate";
+import { t } from "./language/translate";
 import type * as answers from "./answers";
 import { length, listed, number, quantity } from "./language/measures";
 
@@ -18,11 +18,6 @@ export const TERMS = [
 ] as const;
 
 export const NOTHING = "–";
-
-/** Why a place was in doubt, or a fix not used: in the chosen language where the words are known. */
-export function reasonWords(reason: string): string {
-  return knownLabel("assessment_reason", reason) ?? reason;
-}
 
 /** Under CE50, CE95, VE95 and SE95. */
 export function cells(figures: Figures | null): string[] {

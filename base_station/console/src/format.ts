@@ -243,7 +243,12 @@ export function place(at: { north_m: number; east_m: number }): string {
 /** Whether the position uses satellites, and the reason if not. */
 export function gpsText(reason: string | null): string {
   if (reason === null) return t("member.gps_none");
-  return reason === "" ? t("member.gps_used") : t("member.gps_unused", { reason });
+  return reason === "" ? t("member.gps_used") : t("member.gps_unused", { reason: positioningReason(reason) });
+}
+
+/** Why a place is in doubt, or a fix not used: in the chosen language where the words are known. */
+export function positioningReason(reason: string): string {
+  return knownLabel("assessment_reason", reason) ?? reason;
 }
 
 /** The level of an alarm that only informs: the unit's silence is no loss. */

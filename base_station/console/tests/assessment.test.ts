@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
 import * as assessment from "../src/assessment";
-import { show } from "../src/language/catalogue";
 
 const FIGURES: assessment.Figures = {
   ce50_m: 1.04,
@@ -83,12 +82,5 @@ describe("the assessment of an incident", () => {
     expect(assessment.pinWords(wrong)).toBe(
       "Stairs: not shown live, 0.3\u00a0m after post-processing (0.6 σ), wrong floor, not used",
     );
-  });
-
-  it("has the station's reasons in the chosen language, and others as they came", async () => {
-    await show("de");
-    expect(assessment.reasonWords("the receiver has no fix")).toBe("der Empfänger hat keine Position");
-    expect(assessment.reasonWords("of another version")).toBe("of another version");
-    await show("en");
   });
 });

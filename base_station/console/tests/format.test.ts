@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import * as format from "../src/format";
+import { show } from "../src/language/catalogue";
 import { problemsOf } from "../src/live/codedText";
 import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
@@ -188,6 +189,13 @@ describe("words", () => {
     ["too far from the site", "not used: too far from the site"],
   ])("say of a last fix with the reason %s: %s", (reason, text) => {
     expect(format.gpsText(reason)).toBe(text);
+  });
+
+  it("have the reason of the station in the chosen language, and another one as it came", async () => {
+    await show("de");
+    expect(format.gpsText("the receiver has no fix")).toBe("nicht verwendet: der Empfänger hat keine Position");
+    expect(format.positioningReason("of another version")).toBe("of another version");
+    await show("en");
   });
 
   it("call a temperature old after ten seconds without another one", () => {

@@ -10,7 +10,6 @@ import {
   lightParts,
   NOTHING,
   pinWords,
-  reasonWords,
   TERMS,
   tooSure,
   wearerOf,
@@ -18,7 +17,7 @@ import {
   type Figures,
   type TrustSeconds,
 } from "../assessment";
-import { duration, percent } from "../format";
+import { duration, percent, positioningReason } from "../format";
 import { length, listed } from "../language/measures";
 import { t } from "../language/translate";
 import { Columns } from "./Columns";
@@ -155,7 +154,7 @@ function Lights({ report }: { report: Assessment }) {
               {unit.trust.causes.length === 0 && NOTHING}
               {unit.trust.causes.map(([cause, seconds]) => (
                 <div key={cause}>
-                  {reasonWords(cause)} {unbroken(seconds)}
+                  {positioningReason(cause)} {unbroken(seconds)}
                 </div>
               ))}
             </td>
@@ -231,7 +230,7 @@ function Checks({ report }: { report: Assessment }) {
               {unit.pin_residuals.map(pinWords).join("; ") || NOTHING}
             </td>
             <td class="detail" data-label={t("assessment.not_used")}>
-              {unit.not_used.map(([reason, count]) => `${count} ${reasonWords(reason)}`).join("; ") || NOTHING}
+              {unit.not_used.map(([reason, count]) => `${count} ${positioningReason(reason)}`).join("; ") || NOTHING}
             </td>
           </tr>
         ))}

@@ -71,8 +71,20 @@ export const member: Part<"member"> = {
 };
 
 export const worn: Part<"worn"> = {
+  foot: "Fuß",
   left_foot: "linker Fuß",
   right_foot: "rechter Fuß",
+  leg: "Bein",
+  upper_body: "Oberkörper",
+  shank: "Unterschenkel",
+  thigh: "Oberschenkel",
+  pocket: "Hosentasche",
+  hip: "Hüfte",
+  waist: "Taille",
+  lower_back: "unterer Rücken",
+  torso: "Rumpf",
+  chest: "Brust",
+  hand: "Hand",
 };
 
 /** What makes positions of the samples, by its name in the unit. */

@@ -70,8 +70,20 @@ export const member = {
 } as const;
 
 export const worn = {
+  foot: "foot",
   left_foot: "left foot",
   right_foot: "right foot",
+  leg: "leg",
+  upper_body: "upper body",
+  shank: "shank",
+  thigh: "thigh",
+  pocket: "pocket",
+  hip: "hip",
+  waist: "waist",
+  lower_back: "lower back",
+  torso: "torso",
+  chest: "chest",
+  hand: "hand",
 } as const;
 
 /** What makes positions of the samples, by its name in the unit. */

@@ -71,8 +71,20 @@ export const member: Part<"member"> = {
 };
 
 export const worn: Part<"worn"> = {
+  foot: "pied",
   left_foot: "pied gauche",
   right_foot: "pied droit",
+  leg: "jambe",
+  upper_body: "haut du corps",
+  shank: "tibia",
+  thigh: "cuisse",
+  pocket: "poche",
+  hip: "hanche",
+  waist: "taille",
+  lower_back: "bas du dos",
+  torso: "buste",
+  chest: "poitrine",
+  hand: "main",
 };
 
 /** What makes positions of the samples, by its name in the unit. */
