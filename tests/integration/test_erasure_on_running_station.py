@@ -76,7 +76,7 @@ def test_erasure_runs_on_a_running_station(tmp_path: Path) -> None:
         shown = msgspec.json.encode(station.screen.resets[-1]).decode()
         assert (ANA in shown, BO in shown) == (False, True)
         station.act(RegisterUnit("FF-03", "FF-03"))  # the log goes on
-        assert len(station.recorder.segments()) == 2
+        assert len(station.recorder.segments()) > 1
     assert len(list(read_log(folder.log))) > 10
     text = b"".join(payload for _, _, payload in read_log(folder.log)).decode("utf-8", "ignore")
     assert ANA not in text

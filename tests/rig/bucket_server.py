@@ -28,6 +28,8 @@ from tests.rig.waiting import until
 BUCKET = "muster"
 ADDRESS = f"s3://{BUCKET}/station"
 _PARTS = ("s3", "master", "volume", "filer")
+_ATTEMPTS = 3
+_START_S = 60.0  # of a busy machine
 _END_WITH_PARENT = """
 import ctypes, os, signal, sys
 ctypes.CDLL(None).prctl(1, signal.SIGTERM)
@@ -98,7 +100,8 @@ class BucketServer:
             )
         answers, has_bucket = self._answers, self._has_bucket
         if self._namespace is None:
-            until(answers, f"the S3 server answers; {self._folder / 'output.txt'} has its words")
+            until(lambda: answers() or self._has_ended(), "the S3 server answers", _START_S)
+            assert not self._has_ended(), (self._folder / "output.txt").read_text()[-2000:]
             until(has_bucket, "the server takes files")
         else:  # the first file makes the bucket
             until(lambda: self._from_inside(answers), "the S3 server answers")
@@ -108,6 +111,9 @@ class BucketServer:
             self._running.kill()
             self._running.wait()
             self._running = None
+
+    def _has_ended(self) -> bool:
+        return self._running is None or self._running.poll() is not None
 
     def _from_inside(self, ask: Callable[[], bool]) -> bool:
         assert self._namespace is not None
@@ -138,12 +144,24 @@ class BucketServer:
 
 @contextmanager
 def bucket_server() -> Iterator[BucketServer]:
-    """One that runs."""
-    folder = Path(tempfile.mkdtemp(prefix="muster-s3-"))
-    server = BucketServer(folder)
+    """One that runs.  A port that was free may be another program's by then: it is tried again."""
+    for attempt in range(_ATTEMPTS):
+        folder = Path(tempfile.mkdtemp(prefix="muster-s3-"))
+        server = BucketServer(folder)
+        try:
+            server.start()
+        except AssertionError:
+            _remove(server, folder)
+            if attempt == _ATTEMPTS - 1:
+                raise
+        else:
+            break
     try:
-        server.start()
         yield server
     finally:
-        server.stop()
-        shutil.rmtree(folder, ignore_errors=True)
+        _remove(server, folder)
+
+
+def _remove(server: BucketServer, folder: Path) -> None:
+    server.stop()
+    shutil.rmtree(folder, ignore_errors=True)
