@@ -17,7 +17,7 @@ from base_station.site.plan import Ring
 from base_station.site.storeys import storey_of
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
 from base_station.views.answer import to_ms, to_ms_or_none
-from base_station.views.text_code import text_code_views
+from base_station.views.text_code import text_code_view, text_code_views
 from base_station.views.wire import (
     ClockView,
     DutyView,
@@ -31,7 +31,7 @@ from base_station.views.wire import (
     WornSensorView,
 )
 from shared.clock import NS_PER_MS, NS_PER_S
-from shared.coded_text import code_of_text
+from shared.coded_text import code_of_text, coded, with_code
 from shared.messages import (
     Activity,
     BatteryState,
@@ -134,8 +134,22 @@ def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightVi
     if not findings:
         return _READY
     failed = any(one.level is PreflightLevel.FAILED for one in findings)
-    text = "; ".join(f"{one.subject}: {one.text}" for one in findings)
-    return PreflightView("failed" if failed else "warning", text)
+    texts = [_finding_text(one) for one in findings]
+    return PreflightView(
+        "failed" if failed else "warning",
+        "; ".join(texts),
+        tuple(map(str, texts)),
+        tuple(text_code_view(code_of_text(one)) for one in texts),
+    )
+
+
+def _finding_text(finding: PreflightFinding) -> str:
+    return coded(
+        "check-finding",
+        "{subject}: {text}",
+        subject=with_code(finding.subject, finding.subject_code),
+        text=with_code(finding.text, finding.text_code),
+    )
 
 
 @lru_cache(maxsize=1000)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from edge.agent.batteries import Batteries
 from edge.config import EdgeConfig
-from edge.preflight.finding import CheckFinding, Severity
+from edge.preflight.finding import HAS_NONE, NO_READING, CheckFinding, Severity, subject
 from edge.samples import (
     AmbientSample,
     BatterySample,
@@ -24,6 +24,7 @@ from edge.samples import (
 )
 from edge.sources.interface import Quantity
 from edge.sources.temperature.registry import sensor_name
+from shared.coded_text import CodedText, Term, coded
 
 _TEMPERATURE_DEGC = (-40.0, 60.0)  # around a unit, and inside one, before its wearer goes in
 _BATTERY_LOW, _BATTERY_EMPTY = 0.5, 0.2  # of full; half lasts an incident
@@ -86,67 +87,76 @@ class AuxiliarySurvey:
             self._best_fix = fix
 
     def _temperature(self) -> Iterator[CheckFinding]:
-        subject = "temperature"
         if not self._config.temperatures and not self._temperatures:
-            yield CheckFinding(subject, Severity.WARNING, "the unit has no sensor", _NO_HEAT_ALARM)
+            yield CheckFinding(
+                _temperature_subject(""),
+                Severity.WARNING,
+                coded("check-no-temperature", "the unit has no sensor"),
+                _NO_HEAT_ALARM,
+            )
         for sensor in map(sensor_name, self._config.temperatures):
             if sensor not in self._temperatures:
                 yield CheckFinding(
-                    f"{subject} {sensor}", Severity.FAILED, "no reading", _NO_HEAT_ALARM
+                    _temperature_subject(sensor), Severity.FAILED, NO_READING, _NO_HEAT_ALARM
                 )
         least_degc, most_degc = _TEMPERATURE_DEGC
         for sensor, degc in sorted(self._temperatures.items()):
             is_plausible = least_degc <= degc <= most_degc
             yield CheckFinding(
-                f"{subject} {sensor}".strip(),
+                _temperature_subject(sensor),
                 Severity.OK if is_plausible else Severity.WARNING,
                 f"{degc:.1f} °C",
                 "" if is_plausible else "out here it makes no sense: check the sensor's wiring",
             )
 
     def _battery(self) -> Iterator[CheckFinding]:
-        battery = self._batteries.emptiest(self._newest_ns)
+        battery, about = self._batteries.emptiest(self._newest_ns), subject("battery", "battery")
         if battery is None:
             is_set = bool(self._config.battery)
             level = Severity.FAILED if is_set else Severity.WARNING
-            text = "no reading" if is_set else "the unit does not know its battery"
-            yield CheckFinding("battery", level, text, _NO_LOW_BATTERY)
+            unknown = coded("check-battery-unknown", "the unit does not know its battery")
+            yield CheckFinding(about, level, NO_READING if is_set else unknown, _NO_LOW_BATTERY)
             return
-        text = f"{battery.level:.0%} of {battery.battery or 'the sensor'}"
-        if math.isfinite(battery.left_s):
-            text += f", {battery.left_s / 3600.0:.1f} h left"
+        text = _battery_text(battery)
         if battery.level < _BATTERY_EMPTY:
-            yield CheckFinding("battery", Severity.FAILED, text, "charge or change it")
+            yield CheckFinding(about, Severity.FAILED, text, "charge or change it")
         elif battery.level < _BATTERY_LOW or battery.left_s < _LEFT_MIN_S:
-            yield CheckFinding("battery", Severity.WARNING, text, "it may not last the incident")
+            yield CheckFinding(about, Severity.WARNING, text, "it may not last the incident")
         else:
-            yield CheckFinding("battery", Severity.OK, text)
+            yield CheckFinding(about, Severity.OK, text)
 
     def _gnss(self) -> Iterator[CheckFinding]:
-        subject, fix = "satellites", self._best_fix
+        about, fix = subject("satellites", "satellites"), self._best_fix
         if not self._config.gps and Quantity.FIX not in self._gives:
             yield CheckFinding(
-                subject,
+                about,
                 Severity.WARNING,
-                "the unit has no receiver",
+                coded("check-no-receiver", "the unit has no receiver"),
                 "its place on the map has to come from a pin, a beacon or the others",
             )
         elif not self._has_receiver_answered:
             if self._config.gps:
-                yield CheckFinding(
-                    subject, Severity.FAILED, "the receiver is silent", "check its cable"
-                )
+                silent = coded("check-receiver-silent", "the receiver is silent")
+                yield CheckFinding(about, Severity.FAILED, silent, "check its cable")
         elif fix is None or not fix.horizontal_std_m <= _FIX_STD_MAX_M:
             yield CheckFinding(
-                subject, Severity.WARNING, "no fix yet", "wait under the open sky before going in"
+                about,
+                Severity.WARNING,
+                coded("check-no-fix", "no fix yet"),
+                "wait under the open sky before going in",
             )
         else:
             text = f"fix of {fix.satellites} satellites, {fix.horizontal_std_m:.0f} m"
-            yield CheckFinding(subject, Severity.OK, text)
+            yield CheckFinding(about, Severity.OK, text)
 
     def _button(self, *, asks_press: bool) -> Iterator[CheckFinding]:
         if Quantity.MAYDAY_BUTTON not in self._gives:
-            yield CheckFinding("mayday button", Severity.WARNING, "the unit has none", _NO_MAYDAY)
+            yield CheckFinding(
+                subject("mayday_button", "mayday button"),
+                Severity.WARNING,
+                HAS_NONE,
+                _NO_MAYDAY,
+            )
         if self._buttons:
             yield CheckFinding(
                 "button", Severity.OK, f"pressed: {', '.join(sorted(self._buttons))}"
@@ -155,3 +165,25 @@ class AuxiliarySurvey:
             yield CheckFinding(
                 "button", Severity.WARNING, "not pressed during the check", "press it once"
             )
+
+
+def _temperature_subject(sensor: str) -> CodedText:
+    if not sensor:
+        return subject("temperature", "temperature")
+    term = Term("temperature", "temperature")
+    return coded("check-subject-named", "{subject} {sensor}", subject=term, sensor=sensor)
+
+
+def _battery_text(battery: BatterySample) -> CodedText:
+    of = battery.battery or coded("check-sensor", "the sensor")
+    if not math.isfinite(battery.left_s):
+        return coded(
+            "check-battery", "{level_fraction:.0%} of {of}", level_fraction=battery.level, of=of
+        )
+    return coded(
+        "check-battery-left",
+        "{level_fraction:.0%} of {of}, {left_h:.1f} h left",
+        level_fraction=battery.level,
+        of=of,
+        left_h=round(battery.left_s / 3600.0, 1),
+    )

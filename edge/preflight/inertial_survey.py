@@ -7,17 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import msgspec
 import numpy as np
 
 from edge.agent.sensor_health import SensorHealth
 from edge.calibration.rest_detector import RestDetector, RestWindow, mean_of, seconds
-from edge.preflight.finding import CheckFinding, Severity
+from edge.preflight.finding import NO_READING, CheckFinding, Severity, subject_of
 from edge.samples import Floats, ImuBatch, SensorDescription
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
-_SENSOR, _RATE, _RANGE = "inertial sensor", "sample rate", "measuring range"
-_ACCELEROMETER, _GYROSCOPE = "accelerometer", "gyroscope"
+# Codes of the subjects, and their words.
+_SENSOR = "inertial_sensor", "inertial sensor"
+_RATE = "sample_rate", "sample rate"
+_RANGE = "measuring_range", "measuring range"
+_ACCELEROMETER = "accelerometer", "accelerometer"
+_GYROSCOPE = "gyroscope", "gyroscope"
+_FIELD = "magnetic_field", "magnetic field"
+_PRESSURE = "air_pressure", "air pressure"
 
 _RATE_TOLERANCE = 0.05  # of the rate that is stated
 _RATE_MIN_HZ = 50.0  # a stance of a quick walk lasts 0.15 s
@@ -62,29 +68,36 @@ class InertialSurvey:
 
     def findings(self, *, asks_rest: bool = True) -> Iterator[CheckFinding]:
         """``asks_rest``: a person was asked to lay the unit down."""
-        for finding in self._findings(asks_rest=asks_rest):
-            of = f" of {self._name}" if self._name else ""
-            yield msgspec.structs.replace(finding, subject=f"{finding.subject}{of}")
+        yield from self._findings(asks_rest=asks_rest)
+
+    def _subject(self, code: str, words: str) -> str:
+        return subject_of(code, words, self._name)
 
     def _findings(self, *, asks_rest: bool) -> Iterator[CheckFinding]:
         if self._count < 2:  # two times make a rate
             yield CheckFinding(
-                _SENSOR,
+                self._subject(*_SENSOR),
                 Severity.FAILED,
-                f"{self._sensor.name or 'the source'} gave no samples",
+                coded(
+                    "check-no-samples",
+                    "{source} gave no samples",
+                    source=self._sensor.name or "the source",
+                ),
                 "check its power and cable; without it the wearer is not tracked",
             )
             return
-        yield from (CheckFinding(_SENSOR, Severity.FAILED, fault) for fault in self._faults)
+        yield from (
+            CheckFinding(self._subject(*_SENSOR), Severity.FAILED, one) for one in self._faults
+        )
         yield self._rate()
         yield from self._ranges()
         yield from self._at_rest(asks_rest=asks_rest)
         yield from _quantity(
-            "magnetic field", self._field_ut, _FIELD_UT, 1.0, "uT",
+            self._subject(*_FIELD), self._field_ut, _FIELD_UT, 1.0, "uT",
             "iron or a magnet is near it, or it is not calibrated: headings drift",
         )  # fmt: skip
         yield from _quantity(
-            "air pressure", self._pressure_pa, _PRESSURE_PA, 100.0, "hPa",
+            self._subject(*_PRESSURE), self._pressure_pa, _PRESSURE_PA, 100.0, "hPa",
             "the barometer is broken or closed: heights rest on the steps alone",
         )  # fmt: skip
 
@@ -100,35 +113,48 @@ class InertialSurvey:
         elapsed_s = max((self._last_ns - self._first_ns) / NS_PER_S, 1e-9)
         rate_hz, gap_s = (self._count - 1) / elapsed_s, self._longest_gap_ns / NS_PER_S
         stated_hz = self._sensor.rate_hz
-        text = f"{rate_hz:.1f} samples/s of {stated_hz:g}, longest gap {1e3 * gap_s:.0f} ms"
+        subject = self._subject(*_RATE)
+        text = coded(
+            "check-rate",
+            "{rate_hz:.1f} samples/s of {stated_hz:g}, longest gap {gap_ms:.0f} ms",
+            rate_hz=round(rate_hz, 1),
+            stated_hz=stated_hz,
+            gap_ms=round(1e3 * gap_s),
+        )
         if rate_hz < _RATE_MIN_HZ:
             return CheckFinding(
-                _RATE,
+                subject,
                 Severity.FAILED,
                 text,
                 f"the tracker needs {_RATE_MIN_HZ:g}; set a higher rate",
             )
         if abs(rate_hz - stated_hz) > _RATE_TOLERANCE * stated_hz or gap_s > _GAP_MAX_S:
             return CheckFinding(
-                _RATE,
+                subject,
                 Severity.WARNING,
                 text,
                 "samples are lost on the way: check cable, radio, load",
             )
-        return CheckFinding(_RATE, Severity.OK, text)
+        return CheckFinding(subject, Severity.OK, text)
 
     def _ranges(self) -> Iterator[CheckFinding]:
         accel_mps2 = self._sensor.accel_full_scale_mps2
         gyro_radps = self._sensor.gyro_full_scale_radps
         if accel_mps2 is None or gyro_radps is None:
             return
-        text = f"{accel_mps2 / _GRAVITY_MPS2:.0f} g and {np.degrees(gyro_radps):.0f} deg/s"
+        subject = self._subject(*_RANGE)
+        text = coded(
+            "check-range",
+            "{accel_g:.0f} g and {gyro_degps:.0f} deg/s",
+            accel_g=round(accel_mps2 / _GRAVITY_MPS2),
+            gyro_degps=round(np.degrees(gyro_radps)),
+        )
         if accel_mps2 < _ACCEL_RANGE_MIN_MPS2 or gyro_radps < _GYRO_RANGE_MIN_RADPS:
             yield CheckFinding(
-                _RANGE, Severity.WARNING, text, "steps go beyond it: set 16 g and 2000 deg/s"
+                subject, Severity.WARNING, text, "steps go beyond it: set 16 g and 2000 deg/s"
             )
         else:
-            yield CheckFinding(_RANGE, Severity.OK, text)
+            yield CheckFinding(subject, Severity.OK, text)
 
     def _at_rest(self, *, asks_rest: bool) -> Iterator[CheckFinding]:
         rest = self._longest_rest()
@@ -136,9 +162,9 @@ class InertialSurvey:
             if not asks_rest:
                 return
             yield CheckFinding(
-                "rest",
+                self._subject("rest", "rest"),
                 Severity.WARNING,
-                "it was never still for a second",
+                coded("check-never-still", "it was never still for a second"),
                 "lay the unit down and check again: gravity, bias and noise were not seen",
             )
             return
@@ -147,16 +173,25 @@ class InertialSurvey:
         rate_degps = float(np.degrees(np.linalg.norm(mean.gyro_radps)))
         is_gravity = abs(force_mps2 - _GRAVITY_MPS2) <= _GRAVITY_TOLERANCE_MPS2
         yield CheckFinding(
-            _ACCELEROMETER,
+            self._subject(*_ACCELEROMETER),
             Severity.OK if is_gravity else Severity.FAILED,
-            f"{force_mps2:.2f} m/s2 at rest, gravity is {_GRAVITY_MPS2}",
+            coded(
+                "check-gravity",
+                "{force_mps2:.2f} m/s2 at rest, gravity is {gravity_mps2}",
+                force_mps2=round(force_mps2, 2),
+                gravity_mps2=_GRAVITY_MPS2,
+            ),
             "" if is_gravity else f"its scale or bias is wrong: {_CALIBRATE}, or replace it",
         )
         is_slow = rate_degps <= np.degrees(_RATE_AT_REST_MAX_RADPS)
         yield CheckFinding(
-            _GYROSCOPE,
+            self._subject(*_GYROSCOPE),
             Severity.OK if is_slow else Severity.FAILED,
-            f"{rate_degps:.2f} deg/s at rest",
+            coded(
+                "check-turn-at-rest",
+                "{rate_degps:.2f} deg/s at rest",
+                rate_degps=round(rate_degps, 2),
+            ),
             "" if is_slow else f"its bias is too large to be found while walking: {_CALIBRATE}",
         )
 
@@ -178,7 +213,7 @@ def _quantity(
     values = np.concatenate(columns)
     values = values[np.isfinite(values)]
     if not len(values):
-        yield CheckFinding(subject, Severity.WARNING, "no reading", remedy)
+        yield CheckFinding(subject, Severity.WARNING, NO_READING, remedy)
         return
     median = float(np.median(values))
     is_plausible = limits[0] <= median <= limits[1]

@@ -8,12 +8,17 @@ from threading import Event
 
 from edge.notifiers.registry import open_notifier
 from edge.notifiers.signals import Notice, Signal
-from edge.preflight.finding import CheckFinding, Severity
+from edge.preflight.finding import HAS_NONE, CheckFinding, Severity, subject
 from edge.sources.sysfs import SYSFS, explain_read_error
 
 _TEST = Notice(Signal.TEXT, text="this is a test.")
 _NO_WEARER_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
-NO_OUTPUT = CheckFinding("output", Severity.WARNING, "the unit has none", _NO_WEARER_NOTIFIED)
+NO_OUTPUT = CheckFinding(
+    subject("output", "output"),
+    Severity.WARNING,
+    HAS_NONE,
+    _NO_WEARER_NOTIFIED,
+)
 
 
 def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[CheckFinding]:
@@ -22,15 +27,15 @@ def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Check
     if not notifiers:
         yield NO_OUTPUT
     for text, notifier in notifiers.items():
-        subject = f"output {text}"
+        output = f"output {text}"
         try:
             notifier.play(_TEST, Event())
             notifier.close()
         except OSError as error:
             yield CheckFinding(
-                subject, Severity.FAILED, explain_read_error(error), _NO_WEARER_NOTIFIED
+                output, Severity.FAILED, explain_read_error(error), _NO_WEARER_NOTIFIED
             )
         else:
             yield CheckFinding(
-                subject, Severity.OK, "has played a test message; was it seen or heard?"
+                output, Severity.OK, "has played a test message; was it seen or heard?"
             )

@@ -35,5 +35,9 @@ def print_verdict(unit_id: str, findings: Sequence[CheckFinding], console: Conso
 
 def encode_report(unit_id: str, findings: Sequence[CheckFinding]) -> str:
     """Return unit, gravest level and findings as JSON."""
-    report = {"unit": unit_id, "level": worst(findings), "findings": findings}
+    plain = [
+        msgspec.structs.replace(one, subject=str(one.subject), text=str(one.text))
+        for one in findings
+    ]
+    report = {"unit": unit_id, "level": worst(findings), "findings": plain}
     return msgspec.json.format(msgspec.json.encode(report)).decode()

@@ -14,12 +14,13 @@ from threading import Thread
 
 from edge.config import EdgeConfig
 from edge.preflight.auxiliary_survey import AuxiliarySurvey
-from edge.preflight.finding import CheckFinding, Severity
+from edge.preflight.finding import CheckFinding, Severity, subject
 from edge.preflight.inertial_survey import InertialSurvey
 from edge.preflight.output_check import NO_OUTPUT
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.interface import Quantity
 from shared.clock import NS_PER_S
+from shared.coded_text import coded, text_of_error
 from shared.messages import PreflightFinding, PreflightLevel
 
 logger = logging.getLogger(__name__)
@@ -28,7 +29,10 @@ SURVEY_S = 10.0  # as `muster edge check` does
 _AGAIN_NS = 5 * NS_PER_S
 _LEVELS = {Severity.FAILED: PreflightLevel.FAILED, Severity.WARNING: PreflightLevel.WARNING}
 _NO_ANSWER = CheckFinding(
-    "disk", Severity.WARNING, "it does not answer", "messages may be kept nowhere: look at its log"
+    subject("disk", "disk"),
+    Severity.WARNING,
+    coded("check-disk-silent", "it does not answer"),
+    "messages may be kept nowhere: look at its log",
 )
 
 
@@ -86,8 +90,11 @@ class StartCheck:
         except Exception as error:  # the unit goes on without its check
             logger.exception("the check at the start has failed")
             self._due_ns = None
-            text = f"it has failed ({type(error).__name__}: {error})"
-            return _as_message([CheckFinding("check at the start", Severity.WARNING, text)])
+            text = coded(
+                "check-broken", "it has failed ({error})", error=f"{type(error).__name__}: {error}"
+            )
+            about = subject("start_check", "check at the start")
+            return _as_message([CheckFinding(about, Severity.WARNING, text)])
 
     def _look(self) -> tuple[PreflightFinding, ...] | None:
         if self._error is not None:
@@ -124,7 +131,9 @@ class StartCheck:
             self._of_disk = list(self._installation())
         except Exception as error:  # a unit must start in any case
             logger.exception("the data folder cannot be checked")
-            self._of_disk = [CheckFinding("disk", Severity.FAILED, str(error))]
+            self._of_disk = [
+                CheckFinding(subject("disk", "disk"), Severity.FAILED, text_of_error(error))
+            ]
 
 
 def _log(finding: CheckFinding) -> None:
@@ -136,6 +145,7 @@ def _log(finding: CheckFinding) -> None:
 def _as_message(findings: Iterable[CheckFinding]) -> tuple[PreflightFinding, ...]:
     """Return the findings as they are published, the gravest first."""
     sent = (
-        PreflightFinding(_LEVELS[one.level], one.subject, one.text, one.remedy) for one in findings
+        PreflightFinding.of(_LEVELS[one.level], one.subject, one.text, one.remedy)
+        for one in findings
     )
     return tuple(sorted(sent, key=lambda one: -one.level))

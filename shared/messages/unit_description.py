@@ -6,10 +6,12 @@ from enum import IntEnum
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode, code_of_text
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import unit_description_pb2
 from shared.messages.quantise import unsigned32
+from shared.messages.text_code import get_text_code, put_text_code
 
 
 class PreflightLevel(IntEnum):
@@ -25,19 +27,42 @@ class PreflightFinding(msgspec.Struct, frozen=True):
     subject: str  # a word or two
     text: str  # what was found
     remedy: str = ""  # what it costs, or what to do
+    subject_code: TextCode = NO_CODE  # of ``subject``, where it has one
+    text_code: TextCode = NO_CODE  # of ``text``, where it has one
+
+    def __hash__(self) -> int:
+        """Without the codes, which have dictionaries and follow from the texts."""
+        return hash((self.level, self.subject, self.text, self.remedy))
+
+    @staticmethod
+    def of(level: PreflightLevel, subject: str, text: str, remedy: str) -> PreflightFinding:
+        """With the codes of subject and text, where they have some."""
+        codes = code_of_text(subject), code_of_text(text)
+        return PreflightFinding(level, str(subject), str(text), remedy, *codes)
 
     def to_wire(self) -> unit_description_pb2.PreflightFinding:
-        return unit_description_pb2.PreflightFinding(
+        wire = unit_description_pb2.PreflightFinding(
             level=int(self.level),  # type: ignore[arg-type]  # stubs want the generated enum
             subject=self.subject,
             text=self.text,
             remedy=self.remedy,
         )
+        if self.subject_code.code:
+            put_text_code(wire.subject_code, self.subject_code)
+        if self.text_code.code:
+            put_text_code(wire.text_code, self.text_code)
+        return wire
 
     @staticmethod
     def from_wire(wire: unit_description_pb2.PreflightFinding) -> PreflightFinding:
-        level = known(PreflightLevel, wire.level)
-        return PreflightFinding(level, wire.subject, wire.text, wire.remedy)
+        return PreflightFinding(
+            level=known(PreflightLevel, wire.level),
+            subject=wire.subject,
+            text=wire.text,
+            remedy=wire.remedy,
+            subject_code=get_text_code(wire.subject_code),
+            text_code=get_text_code(wire.text_code),
+        )
 
 
 class UnitSensor(msgspec.Struct, frozen=True):

@@ -19,6 +19,7 @@ LANGUAGES = ("en", "de", "fr")
 PARTS = (
     "problems",
     "unit_faults",
+    "unit_checks",
     "coded_reasons",
     "drawing_notes",
     *(

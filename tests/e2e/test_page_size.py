@@ -13,7 +13,7 @@ from tests.e2e.station_process import StationProcess
 
 MOST_BYTES = 250_000
 PAGE = {"Document", "Script", "Stylesheet"}
-AFTERWARDS = "/assets/refusals-"  # fetched when people are shown
+AFTERWARDS = "/assets/deferred-"  # fetched when people are shown
 
 
 @pytest.mark.parametrize(

@@ -72,6 +72,10 @@ LIVE_FIELDS: Mapping[str, str] = {
     "gps": "Why its last fix is not used; empty: it is; null: none has come.",
     "switched_off": "It was switched off in order: its silence since is no loss.",
     "preflight": "What it found when it checked itself at its start; null: it has not yet.",
+    "PreflightView.level": "ok, or how bad the gravest finding is.",
+    "PreflightView.text": "All findings in one text, the gravest first; empty: ok.",
+    "findings": "The findings, the gravest first.",
+    "finding_codes": "Codes of findings, in their order, for texts in other languages.",
     # ---- its status
     "activity": "What the wearer does, such as walking.",
     "motionless_s": "For how long the wearer has not moved.",

@@ -7,7 +7,6 @@ import type {
   ClockView,
   ForwarderView,
   PositionView,
-  PreflightView,
   SensorTemperatureView,
   StatusView,
   UnitView,
@@ -61,11 +60,6 @@ export function countdown(ms: number): string {
 }
 
 const CLOCK_WRONG_MS = 10_000;
-
-/** Results of a unit's check at its start. */
-export function preflightText({ level, text }: PreflightView): string {
-  return t(level === "failed" ? "member.preflight_failed" : "member.preflight_warning", { text });
-}
 
 /** Place and mounting of a sensor: "left foot", "lower back (belt)". */
 export function wornAt({ place, place_recognised, mount }: WornSensorView): string {

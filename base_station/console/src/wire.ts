@@ -86,6 +86,8 @@ export interface TrustView {
 export interface PreflightView {
   level: "ok" | "warning" | "failed";
   text: string;
+  findings: string[];
+  finding_codes: TextCodeView[];
 }
 
 export interface WornSensorView {

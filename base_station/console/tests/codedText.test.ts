@@ -1,7 +1,7 @@
 /** Texts by the codes of the station, in every language. */
 import { afterEach, describe, expect, test } from "vitest";
-import { loadRefusals, show } from "../src/language/catalogue";
-import { codedText, problemTexts, refusalText } from "../src/live/codedText";
+import { loadDeferred, show } from "../src/language/catalogue";
+import { codedText, preflightText, problemTexts, refusalText } from "../src/live/codedText";
 
 const FULL = {
   code: "log-waits",
@@ -71,7 +71,7 @@ describe("a refusal of the station", () => {
   test("is composed in the chosen language from code and parameters", async () => {
     await show("de");
     expect(refusalText(WRONG)).toBe(WRONG.detail); // not fetched yet
-    await loadRefusals();
+    await loadDeferred();
     expect(refusalText(WRONG)).toMatch(/^Der Ort ist 1\.200.m vom Gebäude des Plans entfernt; höchstens 500.m sind/);
     expect(refusalText({ detail: "Name or password is wrong.", code: "login-wrong", parameters: {} })).toBe(
       "Name oder Passwort ist falsch.",
@@ -82,7 +82,7 @@ describe("a refusal of the station", () => {
 
   test("of another version, or without a code, stays as the station wrote it", async () => {
     await show("de");
-    await loadRefusals();
+    await loadDeferred();
     expect(refusalText({ ...WRONG, code: "of-a-later-version" })).toBe(WRONG.detail);
     expect(refusalText({ ...WRONG, parameters: { other: 1 } })).toBe(WRONG.detail);
     expect(refusalText({ ...WRONG, parameters: "none" })).toBe(WRONG.detail);
@@ -94,5 +94,39 @@ describe("a refusal of the station", () => {
     expect(refusalText(null)).toBeUndefined();
     expect(refusalText("<html>")).toBeUndefined();
     expect(refusalText({ error: "bad gateway" })).toBeUndefined();
+  });
+});
+
+describe("findings of a unit's check at its start", () => {
+  const FOUND = {
+    level: "warning",
+    text: "temperature: the unit has no sensor; radio: weak",
+    findings: ["temperature: the unit has no sensor", "radio: weak"],
+    finding_codes: [
+      {
+        code: "check-finding",
+        texts: {
+          subject: "temperature",
+          "subject:": "check-subject",
+          "subject:subject": "temperature",
+          text: "the unit has no sensor",
+          "text:": "check-no-temperature",
+        },
+        numbers: {},
+      },
+      { code: "check-finding", texts: { subject: "radio", text: "weak" }, numbers: {} },
+    ],
+  } as const;
+
+  test("are composed in the chosen language, and those of another version as they came", async () => {
+    await show("de");
+    expect(preflightText({ ...FOUND, findings: [...FOUND.findings], finding_codes: [...FOUND.finding_codes] })).toBe(
+      "mit Warnungen: Temperatur: das Gerät hat keinen Sensor; radio: weak",
+    );
+  });
+
+  test("are the English text where a station of an earlier version gives no codes", async () => {
+    await show("en");
+    expect(preflightText({ level: "failed", text: "battery: empty" })).toBe("not ready: battery: empty");
   });
 });

@@ -99,7 +99,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     ambient_ms: 1_000,
     ambient_sensors: [],
     can_be_notified: true,
-    preflight: { level: "ok", text: "" },
+    preflight: { level: "ok", text: "", findings: [], finding_codes: [] },
     tracker: "eskf",
     sensors: [{ name: "", place: "foot", place_recognised: false, mount: "", model: "" }],
     incident_id: "i1",

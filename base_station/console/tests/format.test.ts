@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import * as format from "../src/format";
-import { show } from "../src/language/catalogue";
+import { loadDeferred, show } from "../src/language/catalogue";
 import { problemsOf } from "../src/live/codedText";
 import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
@@ -193,6 +193,7 @@ describe("words", () => {
 
   it("have the reason of the station in the chosen language, and another one as it came", async () => {
     await show("de");
+    await loadDeferred();
     expect(format.gpsText("the receiver has no fix")).toBe("nicht verwendet: der Empfänger hat keine Position");
     expect(format.positioningReason("of another version")).toBe("of another version");
     await show("en");
@@ -235,13 +236,6 @@ describe("words", () => {
       "1.5\u00a0kB",
       "98\u00a0MB",
     ]);
-  });
-
-  it.each([
-    [{ level: "warning", text: "output: none" } as const, "with warnings: output: none"],
-    [{ level: "failed", text: "battery: empty" } as const, "not ready: battery: empty"],
-  ])("says what a unit has found at its start", (preflight, text) => {
-    expect(format.preflightText(preflight)).toBe(text);
   });
 });
 

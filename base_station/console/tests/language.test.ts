@@ -1,20 +1,20 @@
 import { IntlMessageFormat } from "intl-messageformat";
 import { afterEach, describe, expect, it } from "vitest";
 import * as format from "../src/format";
-import { type Catalogue, type Language, LANGUAGES, type PartName, type RefusalPart, type Refusals, show, shown } from "../src/language/catalogue";
+import { type Catalogue, type Language, LANGUAGES, type PartName, type DeferredPart, type DeferredTexts, show, shown } from "../src/language/catalogue";
 import * as de from "../src/language/de";
-import * as refusals_de from "../src/language/de/refusals";
+import * as deferred_de from "../src/language/de/deferred";
 import * as en from "../src/language/en";
-import * as refusals_en from "../src/language/en/refusals";
+import * as deferred_en from "../src/language/en/deferred";
 import * as fr from "../src/language/fr";
-import * as refusals_fr from "../src/language/fr/refusals";
+import * as deferred_fr from "../src/language/fr/deferred";
 import { degrees, floorNames, length, metresOf, shownLength, speed, units } from "../src/language/measures";
 import { label, rich, t } from "../src/language/translate";
 
-const CATALOGUES: Record<Language, Catalogue & Refusals> = {
-  en: { ...en, ...refusals_en },
-  de: { ...de, ...refusals_de },
-  fr: { ...fr, ...refusals_fr },
+const CATALOGUES: Record<Language, Catalogue & DeferredTexts> = {
+  en: { ...en, ...deferred_en },
+  de: { ...de, ...deferred_de },
+  fr: { ...fr, ...deferred_fr },
 };
 
 interface Element {
@@ -40,7 +40,7 @@ function parsed(message: string): Element[] {
   return format.getAst() as Element[];
 }
 
-const PARTS = Object.keys(CATALOGUES.en) as (PartName | RefusalPart)[];
+const PARTS = Object.keys(CATALOGUES.en) as (PartName | DeferredPart)[];
 
 describe("the catalogues", () => {
   it.each(LANGUAGES.filter((one) => one !== "en"))("have the same keys and placeholders in %s", (language) => {

@@ -94,6 +94,8 @@ class PreflightView(Answer, frozen=True):
 
     level: Annotated[str, one_of("ok", "warning", "failed")]
     text: str  # for a person, the gravest first; empty: ok
+    findings: tuple[str, ...] = ()  # which ``text`` joins
+    finding_codes: tuple[TextCodeView, ...] = ()  # of ``findings``, in their order
 
 
 class WornSensorView(Answer, frozen=True):

@@ -1,7 +1,7 @@
 /** The language, units and names of floors that this browser keeps. */
 import { effect, signal } from "@preact/signals";
 import { kept } from "../kept";
-import { type Language, LANGUAGES, loadRefusals, show } from "./catalogue";
+import { type Language, LANGUAGES, loadDeferred, show } from "./catalogue";
 import { FLOOR_NAMES, floorNames, UNITS, units } from "./measures";
 
 const CHOICES = ["browser", ...LANGUAGES] as const;
@@ -38,7 +38,7 @@ async function follow(choice: LanguageChoice): Promise<void> {
   try {
     await show(choice === "browser" ? browsers() : choice);
     languageMissing.value = false;
-    void followRefusals(choice);
+    void followDeferred(choice);
   } catch (error) {
     console.warn(error);
     languageMissing.value = true;
@@ -47,12 +47,12 @@ async function follow(choice: LanguageChoice): Promise<void> {
 }
 
 /** Nothing is missing on the page without them: the station's own English is shown. */
-async function followRefusals(choice: LanguageChoice): Promise<void> {
+async function followDeferred(choice: LanguageChoice): Promise<void> {
   try {
-    await loadRefusals();
+    await loadDeferred();
   } catch (error) {
     console.warn(error);
-    askAgain(choice, followRefusals);
+    askAgain(choice, followDeferred);
   }
 }
 

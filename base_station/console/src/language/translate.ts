@@ -1,7 +1,7 @@
 /** Texts by key, in the chosen language.  Whatever reads one while it is drawn is drawn anew in another. */
 import { IntlMessageFormat } from "intl-messageformat";
 import type { ComponentChild } from "preact";
-import { type Key, type Message, type PartName, type RefusalPart, refusals, shown } from "./catalogue";
+import { type Key, type Message, type PartName, type DeferredPart, deferred, shown } from "./catalogue";
 import { locale } from "./measures";
 import type { Placeholders } from "./placeholders";
 
@@ -33,15 +33,15 @@ export function label(part: PartName, code: string): string {
 }
 
 /** The same, or nothing for a code that has no text. */
-export function knownLabel(part: PartName | RefusalPart, code: string): string | undefined {
-  const catalogue: Partial<Record<PartName | RefusalPart, Readonly<Record<string, string>>>> =
-    part in shown.value.catalogue ? shown.value.catalogue : refusals.value;
+export function knownLabel(part: PartName | DeferredPart, code: string): string | undefined {
+  const catalogue: Partial<Record<PartName | DeferredPart, Readonly<Record<string, string>>>> =
+    part in shown.value.catalogue ? shown.value.catalogue : deferred.value;
   return catalogue[part]?.[code];
 }
 
 /** The message for a code of the station with its values, or nothing for a code that has no text. */
 export function knownMessage(
-  part: PartName | RefusalPart,
+  part: PartName | DeferredPart,
   code: string,
   values: Record<string, string | number>,
 ): string | undefined {

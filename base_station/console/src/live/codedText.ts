@@ -1,14 +1,15 @@
 /** Texts by the codes and parameters of the station.  Pure. */
 import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
-import type { PartName, RefusalPart } from "../language/catalogue";
+import type { PartName, DeferredPart } from "../language/catalogue";
 import { length, listed } from "../language/measures";
 import { knownLabel, knownMessage, label, t } from "../language/translate";
-import type { HealthView, TextCodeView } from "../wire";
+import type { HealthView, PreflightView, TextCodeView } from "../wire";
 
 /** The parts with texts of the station and of its units; each code is in one of them. */
 const PARTS = [
   "problem",
   "unit_fault",
+  "unit_check",
   "coded_reason",
   "drawing_note",
   "refusal_access",
@@ -18,7 +19,7 @@ const PARTS = [
   "refusal_past",
   "refusal_station",
   "refusal_form",
-] as const satisfies readonly (PartName | RefusalPart)[];
+] as const satisfies readonly (PartName | DeferredPart)[];
 
 /** The text in the chosen language; the English one where there is no code, as of an earlier version, or one
  * of another version or of a foreign unit. */
@@ -98,4 +99,14 @@ export function problemTexts(view: {
 export function problemsOf(health: HealthView): string[] {
   const problems = problemTexts(health);
   return health.insecure ? [...problems, t("station.not_encrypted")] : problems;
+}
+
+/** A replay of an earlier version's incident has the text alone. */
+type PreflightShown = Pick<PreflightView, "level" | "text"> & Partial<PreflightView>;
+
+/** Findings of a unit's check at its start. */
+export function preflightText({ level, text, findings = [], finding_codes = [] }: PreflightShown): string {
+  const found = findings.map((one, index) => codedText(finding_codes[index], one));
+  const joined = found.length === 0 ? text : found.join("; ");
+  return t(level === "failed" ? "member.preflight_failed" : "member.preflight_warning", { text: joined });
 }

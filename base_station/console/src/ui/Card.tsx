@@ -6,7 +6,7 @@ import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { centring, openDialog, pane, select, selectedUnit } from "../uiState";
 import { isOfAnother } from "../live/alarms";
-import { codedText } from "../live/codedText";
+import { codedText, preflightText } from "../live/codedText";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { OLD_MS } from "../plan/ellipse";
@@ -252,7 +252,7 @@ function NotReady({ unit: { preflight, registered }, chosen }: { unit: UnitView;
   return (
     <p class={`trust ${preflight.level === "failed" ? "red" : ""}`}>
       <Icon name="alarm" />
-      {t("card.preflight", { state: format.preflightText(preflight) })}
+      {t("card.preflight", { state: preflightText(preflight) })}
     </p>
   );
 }

@@ -1,4 +1,6 @@
-/** Refusals of the station in French; fetched when the page is shown. */
+/** Texts that nobody sees at the start, in German: fetched when the page is shown. */
+export * from "./assessment_reasons";
+export * from "./drawing_notes";
 export * from "./refusals_access";
 export * from "./refusals_form";
 export * from "./refusals_incident";
