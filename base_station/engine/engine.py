@@ -119,7 +119,7 @@ class StationEngine:
         self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
-        self._delta_pace = DeltaPace(now_ns, time.process_time_ns())
+        self._delta_pace = DeltaPace(now_ns)
         self._health_due = False  # the next delta carries the station's health
 
     # ---- from any thread
@@ -243,8 +243,7 @@ class StationEngine:
             try:
                 self._publish()
             finally:  # where it cannot be published, too
-                spent_ns = time.thread_time_ns() - before_ns
-                pace.note_sent(now_ns, spent_ns, time.process_time_ns())
+                pace.note_sent(now_ns, time.thread_time_ns() - before_ns)
         while self._snapshot_requests:
             snapshot = (
                 self._publisher.snapshot()
