@@ -27,7 +27,7 @@ from tests.rig.station_process import Membership, StationProcess, station_proces
 from tests.rig.tak_server import ReceivedEvent, TakClient, TakServer
 
 _POSITIONS_SHARE = 5 / 7  # of what a simulated wearer's unit sends
-_START_S = 6.0  # in which the station learns the clocks of all units at once
+_START_S = 6.0  # all units appear at once: the first seconds are shown apart
 _SETTLE_S = 3.0
 _ANCHOR = {"lat_deg": 52.5, "lon_deg": 13.4, "height_m": 40.0}
 
