@@ -22,7 +22,8 @@ from base_station.privacy.log_files import ClosedLog
 from base_station.privacy.requests import request_erasure
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.assessment.wearers import wearers
-from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.post_processing import PostProcessor
+from base_station.replay.solved_tracks import Tracks
 from base_station.replay.trail_kind import TrailKind
 from base_station.standby.cut_erasures import orders_behind
 from base_station.standby.log_truncation import set_aside

@@ -9,42 +9,39 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import TypeVar
 
 import msgspec
-import numpy as np
 
 from base_station.core.pins.evidence import encounters_of, evidence_of_site
-from base_station.core.pins.pin_registry import units_of
-from base_station.core.pins.pin_solver import floors_along
 from base_station.core.state import OWN_SITE_ID, StationState
-from base_station.fusion.lazy_mapping import LastValueMapping
-from base_station.fusion.odometry.points import NO_FLOOR, RESTART, PathArrays
-from base_station.fusion.smoothing.interface import SmoothedPath, Smoother, Solution
+from base_station.fusion.smoothing.interface import Smoother, Solution
 from base_station.replay.assessment.report import IncidentReport, assess
 from base_station.replay.late_arrivals import apply_late_arrivals
 from base_station.replay.playback import Archive, Playback, Record
+from base_station.replay.solved_tracks import (
+    OPEN_END_NS,
+    SolvedIncident,
+    Tracks,
+    raw_tracks,
+    smoothed_tracks,
+)
 from base_station.site.floor_grid import FloorGrid
 from base_station.storage.db.models import IncidentRow
-from base_station.storage.db.records import TrackSample
 from base_station.storage.db.smoothed import SmoothedTracks
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import MemoryLimitError
 from shared.log_on_change import LogOnChange
-from shared.quality import Quality
 
 _log = logging.getLogger(__name__)
 Progress = Callable[[float], None]
-Tracks = Mapping[str, Sequence[TrackSample]]
 Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
 _AGAIN_NS = 300 * NS_PER_S  # after a result that could not be kept: it may have taken long
 QUIET_NS = 30 * NS_PER_S  # without news: a journal that is being read brings more of it
-_EVER_NS = 2**63 - 1  # an open incident goes on: all later records are of it
-UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 
 @dataclass(frozen=True)
@@ -67,15 +64,6 @@ class PostProcessingResult:
     raw: Tracks
     report: IncidentReport
     is_kept: bool
-
-
-@dataclass(frozen=True)
-class SolvedIncident:
-    """Everything at an incident's end, and the trails that follow from it."""
-
-    state: StationState
-    solution: Solution
-    is_outdated: Callable[[], bool]  # a person was forgotten since
 
 
 class PostProcessor:
@@ -111,10 +99,10 @@ class PostProcessor:
     ) -> Smoothed:
         """All of it at once: assessment and trails always belong together."""
         incident_id, smoother = incident.incident_id, self._smoother.name
-        tracks = _smoothed_tracks(incident, known)
+        tracks = smoothed_tracks(incident, known)
         is_kept = False
         if incident.closed_ns is not None:
-            raw = _raw_tracks(incident, known)
+            raw = raw_tracks(incident, known)
             packed = None if report is None else msgspec.msgpack.encode(report)
             with self._keeping:
                 what = (incident_id, smoother, made_ns, tracks, raw, packed)
@@ -221,7 +209,7 @@ class PostProcessor:
         known = self.known(incident)
         if incident.closed_ns is not None:
             self._keep(incident, known, self._clock.utc_ns())
-        return _raw_tracks(incident, known)
+        return raw_tracks(incident, known)
 
     def _assess(self, incident: IncidentRow, live: Tracks) -> IncidentReport:
         return self.post_process(incident, live).report
@@ -231,7 +219,7 @@ class PostProcessor:
     ) -> PostProcessingResult:
         """Make all of it anew."""
         known, made_ns = self.known(incident, on_progress), self._clock.utc_ns()
-        smoothed, raw = _smoothed_tracks(incident, known), _raw_tracks(incident, known)
+        smoothed, raw = smoothed_tracks(incident, known), raw_tracks(incident, known)
         report = assess(
             incident.incident_id,
             self._smoother.name,
@@ -258,7 +246,7 @@ class PostProcessor:
         self, incident: IncidentRow, on_progress: Progress = lambda _: None
     ) -> SolvedIncident:
         with self._working:
-            until_ns = incident.closed_ns or _EVER_NS
+            until_ns = incident.closed_ns or OPEN_END_NS
             is_outdated = self._archive.watch()
             state = self._state_at(
                 incident.incident_id, until_ns, _late_data_ns(incident), on_progress
@@ -312,106 +300,3 @@ def read_report(kept: bytes) -> IncidentReport | None:
         return msgspec.msgpack.decode(kept, type=IncidentReport)
     except msgspec.MsgspecError:
         return None
-
-
-def _smoothed_tracks(incident: IncidentRow, known: SolvedIncident) -> Tracks:
-    return LastValueMapping(
-        _within(incident, known), lambda unit_id: _samples(incident, known, unit_id)
-    )
-
-
-def _raw_tracks(incident: IncidentRow, known: SolvedIncident) -> Tracks:
-    return LastValueMapping(
-        _within(incident, known), lambda unit_id: _raw(incident, known, unit_id)
-    )
-
-
-def _within(incident: IncidentRow, known: SolvedIncident) -> list[str]:
-    """Units that were in it at its end and of which anything is known while it was open."""
-    units, paths = known.state.units, known.solution.paths.items()
-    return [
-        unit_id
-        for unit_id, path in paths
-        if units[unit_id].incident_id == incident.incident_id and _rows_within(incident, path)
-    ]
-
-
-def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
-    """With the floors that were known at the end; they may have been learnt late."""
-    path = known.solution.paths[unit_id]
-    points = known.state.paths[unit_id].arrays()
-    is_placed = _is_placed(known, unit_id, points)
-    floors = floors_along(known.state.site_of(unit_id), points, path.places_m)
-    heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
-    return [
-        TrackSample(
-            t_ns=int(path.t_ns[row]),
-            north_m=float(path.north_m[row]),
-            east_m=float(path.east_m[row]),
-            down_m=float(path.down_m[row]),
-            std_north_m=float(path.std_north_m[row]),
-            std_east_m=float(path.std_east_m[row]),
-            std_down_m=float(path.std_down_m[row]),
-            heading_rad=float(heading_rad[row]),
-            floor=floors[row],
-            quality=_quality(path, row, is_placed=is_placed),
-        )
-        for row in _rows_within(incident, path)
-    ]
-
-
-def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
-    """True if anything ties its path to the incident frame; else it lies about its own start."""
-    verdicts, state = known.solution.verdicts, known.state
-    pins = (
-        pin_id for pin_id, pin in state.site_of(unit_id).pins.items() if unit_id in units_of(pin)
-    )
-    is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)
-    has_start = state.paths[unit_id].start.in_path is not None
-    return has_start or is_pinned or len(points.fix_t_ns) > 0
-
-
-def _raw(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
-    path, points = known.solution.paths[unit_id], known.state.paths[unit_id].arrays()
-    begins = np.flatnonzero((points.flags & RESTART) != 0)
-    begins = np.concatenate(([0], begins[begins > 0]))
-    begin = begins[np.searchsorted(begins, np.arange(len(points)), side="right") - 1]
-    since = points.own_m - points.own_m[begin]
-    cosine, sine = np.cos(path.turn_rad[begin]), np.sin(path.turn_rad[begin])
-    north_m = path.north_m[begin] + cosine * since[:, 0] - sine * since[:, 1]
-    east_m = path.east_m[begin] + sine * since[:, 0] + cosine * since[:, 1]
-    heading_rad = (path.turn_rad[begin] + points.heading_rad) % (2.0 * np.pi)
-    return [
-        TrackSample(
-            t_ns=int(points.t_ns[row]),
-            north_m=float(north_m[row]),
-            east_m=float(east_m[row]),
-            down_m=float(points.down_m[row]),
-            std_north_m=float(points.std_m[row]),
-            std_east_m=float(points.std_m[row]),
-            std_down_m=float(points.down_std_m[row]),
-            heading_rad=float(heading_rad[row]),
-            floor=_floor(points, row),
-            quality=Quality.GOOD.name.lower(),
-        )
-        for row in _rows_within(incident, path)
-    ]
-
-
-def _rows_within(incident: IncidentRow, path: SmoothedPath) -> list[int]:
-    until_ns = incident.closed_ns or _EVER_NS
-    rows: list[int] = np.flatnonzero(
-        (path.t_ns >= incident.opened_ns) & (path.t_ns <= until_ns)
-    ).tolist()
-    return rows
-
-
-def _floor(points: PathArrays, row: int) -> int | None:
-    floor = int(points.floor[row])
-    return None if floor == NO_FLOOR else floor
-
-
-def _quality(path: SmoothedPath, row: int, *, is_placed: bool) -> str:
-    spread_m = np.hypot(path.std_north_m[row], path.std_east_m[row])
-    is_good = is_placed and spread_m <= UNSURE_M
-    return (Quality.GOOD if is_good else Quality.DEGRADED).name.lower()

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.post_processing import PostProcessor
+from base_station.replay.solved_tracks import Tracks
 from base_station.storage.db.models import IncidentRow
 from shared.worker import Worker
 

@@ -14,7 +14,8 @@ from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services
-from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.post_processing import PostProcessor
+from base_station.replay.solved_tracks import Tracks
 from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db import models
 from base_station.storage.db.records import TrackSample

@@ -12,7 +12,7 @@ import msgspec
 import psutil
 
 from base_station.process import gc_tuning
-from base_station.replay.post_processing import PostProcessingResult, PostProcessor, Tracks
+from base_station.replay.post_processing import PostProcessingResult, PostProcessor
 from base_station.replay.processes.wire import (
     Failure,
     FrameChannel,
@@ -21,6 +21,7 @@ from base_station.replay.processes.wire import (
     ProgressFrame,
     UnitTrailsFrame,
 )
+from base_station.replay.solved_tracks import Tracks
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import packed
 from shared.clock import Clock

@@ -29,6 +29,7 @@ from shared.errors import StoreError
 from shared.messages.pins import SetPin
 from shared.messages.station import CloseIncident, OpenIncident, SetAnchor, SetStart
 from tests.rig.live_station import make_pipeline
+from tests.rig.post_processor import post_processor_of
 from tests.rig.round_walk import Walk, truth
 from tests.rig.station_script import START_NS, Script
 
@@ -85,16 +86,6 @@ def store(tmp_path: Path) -> Iterator[Store]:
     """Another store without content."""
     with Store(tmp_path / "station.sqlite") as store:
         yield store
-
-
-def hindsight_of(script: Script, store: Store, folder: Path) -> PostProcessor:
-    """Post-processor of the script's log."""
-    archive = Archive(
-        lambda t_ns: [one for one in script.records if one[0] >= t_ns],
-        Checkpoints(folder / "checkpoints"),
-        make_pipeline,
-    )
-    return PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), ManualClock())
 
 
 @pytest.mark.slow
@@ -244,65 +235,6 @@ def test_raw_trail_is_the_own_path_from_its_start(past: ClosedIncident) -> None:
     assert past.mean_off_m(raw) > 2.0 * past.mean_off_m(smoothed)
 
 
-def test_own_path_begins_anew_where_its_unit_restarted(store: Store, tmp_path: Path) -> None:
-    """Each of its runs as the unit had it, from the known begin of that run."""
-    script = Script()
-    script.register("FF-01")
-    script.act(SetStart("FF-01", 5.0, 7.0, 0.0, 1.0, 0.5, 0.1))
-    script.act(OpenIncident("i1", "Mill Lane"))
-    for boot_id in (7, 8):
-        script.boot_ids["FF-01"] = boot_id
-        for second in range(41):
-            script.now_s += 1.0
-            script.position("FF-01", 1.0 * second, 0.0)
-    script.act(CloseIncident("i1"))
-    post_processor = hindsight_of(script, store, tmp_path)
-    incident = IncidentRow(
-        incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
-    )
-    raw = post_processor.raw(incident)["FF-01"]
-    smoothed = post_processor.smoothed(incident).tracks["FF-01"]
-    assert [one.t_ns for one in raw] == [one.t_ns for one in smoothed]
-    again = next(row for row, one in enumerate(raw) if one.t_ns >= START_NS + 42 * 10**9)
-    for begin, end in ((0, again - 1), (again, -1)):
-        assert (raw[begin].north_m, raw[begin].east_m) == pytest.approx(
-            (smoothed[begin].north_m, smoothed[begin].east_m)
-        )
-        went_m = raw[end].north_m - raw[begin].north_m, raw[end].east_m - raw[begin].east_m
-        assert math.hypot(*went_m) == pytest.approx(40.0, abs=0.02)
-        assert raw[end].heading_rad == pytest.approx(math.atan2(went_m[1], went_m[0]) % math.tau)
-    assert raw[0].heading_rad == pytest.approx(1.0, abs=0.05), "as its start says"
-    assert {one.quality for one in smoothed[:again]} == {"good"}
-
-
-def test_trails_are_of_the_incident_and_the_units_received_in_it(
-    store: Store, tmp_path: Path
-) -> None:
-    """Both were on before, and one was switched off by then."""
-    script = Script()
-    script.register("FF-01", "FF-02")
-    for second in range(50):
-        script.now_s += 1.0
-        if second == 20:
-            script.act(OpenIncident("i1", "Mill Lane"))
-            opened_ns = script.t_ns
-        for unit_id in ("FF-01", "FF-02") if second < 20 else ("FF-01",):
-            script.position(unit_id, 1.0 * second, 0.0)
-    script.act(CloseIncident("i1"))
-    post_processor = hindsight_of(script, store, tmp_path)
-    incident = IncidentRow(
-        incident_id="i1", name="Mill Lane", opened_ns=opened_ns, closed_ns=script.t_ns
-    )
-    for tracks in (post_processor.smoothed(incident).tracks, post_processor.raw(incident)):
-        (track,) = tracks.values()
-        assert list(tracks) == ["FF-01"]
-        assert opened_ns <= track[0].t_ns < opened_ns + 3 * 10**9
-        assert track[-1].t_ns == script.t_ns
-    assert {one.quality for one in post_processor.smoothed(incident).tracks["FF-01"]} == {
-        "degraded"
-    }
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("reported", ["start", "pin", "fix", "nothing"])
 def test_unknown_begin_is_reported_as_such(reported: str, store: Store, tmp_path: Path) -> None:
@@ -321,7 +253,7 @@ def test_unknown_begin_is_reported_as_such(reported: str, store: Store, tmp_path
     if reported == "pin":
         script.act(SetPin("p", "FF-01", script.t_ns, 40.0, 0.0, 0.5, None, None, 0.0, ""))
     script.act(CloseIncident("i1"))
-    post_processor = hindsight_of(script, store, tmp_path)
+    post_processor = post_processor_of(script, store, tmp_path)
     incident = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )

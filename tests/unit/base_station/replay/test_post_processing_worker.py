@@ -9,8 +9,9 @@ from typing import cast
 import pytest
 
 from base_station.replay import post_processing_worker
-from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.post_processing import PostProcessor
 from base_station.replay.post_processing_worker import PostProcessingWorker
+from base_station.replay.solved_tracks import Tracks
 from base_station.storage.db.models import IncidentRow
 from shared.errors import StoreError
 
