@@ -34,6 +34,7 @@ _FAULTS = {  # by pydantic's names of errors
     "tuple_type": _LIST,
     "dict_type": _OBJECT,
     "model_attributes_type": _OBJECT,
+    "target": coded("field-target", "must be one of: unit_id, crew, floor, everyone"),
 }
 
 

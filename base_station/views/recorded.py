@@ -91,7 +91,12 @@ def named_dispatch(dispatch: DispatchView, people: PersonLookup) -> DispatchView
 
 
 def named_pin(pin: PinView, people: PersonLookup) -> PinView:
-    return msgspec.structs.replace(pin, note=shown_text(pin.note, people))
+    code = pin.text_code
+    if code is not None:
+        texts = {name: shown_text(text, people) for name, text in code.texts.items()}
+        code = msgspec.structs.replace(code, texts=texts)
+    note, text = shown_text(pin.note, people), shown_text(pin.text, people)
+    return msgspec.structs.replace(pin, note=note, text=text, text_code=code)
 
 
 def named_beacon(beacon: BeaconView, people: PersonLookup) -> BeaconView:

@@ -36,7 +36,7 @@ from base_station.views.wire import (
     Snapshot,
     StandbyView,
 )
-from shared.coded_text import NO_CODE, code_of_text, coded
+from shared.coded_text import NO_CODE, code_of_text, coded, map_texts
 from shared.geo import Anchor
 from shared.messages import AlarmChange, ExternalKind, ExternalMarker
 from shared.messages.station import NoteDispatch
@@ -180,6 +180,7 @@ def pin_views(state: StationState, people: PersonLookup) -> tuple[PinView, ...]:
 def _pin_view(site: SiteState, pin: Pin, people: PersonLookup) -> PinView:
     verdict = site.pin_verdicts.get(pin.pin_id, WAITING)
     at = location_of(site, pin)
+    text = map_texts(verdict.coded_text, lambda one: shown_text(one, people))
     return PinView(
         pin_id=pin.pin_id,
         kind=pin.kind,
@@ -198,7 +199,8 @@ def _pin_view(site: SiteState, pin: Pin, people: PersonLookup) -> PinView:
         state=verdict.state,
         residual_m=verdict.residual_m,
         sigmas=verdict.sigmas,
-        text=verdict.text,
+        text=str(text),
+        text_code=text_code_view_or_none(code_of_text(text)),
     )
 
 

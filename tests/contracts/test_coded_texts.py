@@ -13,6 +13,9 @@ from typing import NamedTuple
 
 import pytest
 
+from base_station.api import posted_samples
+from base_station.api.forms import Form
+from base_station.api.routes import ROUTERS
 from tests.conftest import PROJECT_ROOT
 
 LANGUAGES = ("en", "de", "fr")
@@ -22,6 +25,7 @@ PARTS = (
     "unit_checks",
     "coded_reasons",
     "drawing_notes",
+    "pin_reasons",
     *(
         f"refusals_{area}"
         for area in ("access", "people", "incident", "plan", "past", "station", "form")
@@ -104,3 +108,19 @@ def test_every_code_has_a_message_with_its_parameters(language: str) -> None:
     assert set(messages) == {one.code for one in COMPOSED}
     for one in COMPOSED:
         assert placeholders_of(messages[one.code]) == one.parameters, (language, one)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_field_of_a_form_has_a_label(language: str) -> None:
+    """But for samples of sensors, which programs send."""
+    path = _CATALOGUES / language / "field_labels.ts"
+    labels = set(re.findall(r'^  (\w+): "', path.read_text(), re.MULTILINE))
+    assert ROUTERS  # has every form imported
+    forms = [form for form in forms_of(Form) if form.__module__ != posted_samples.__name__]
+    assert labels == {name for form in forms for name in form.model_fields}
+
+
+def forms_of(kind: type[Form]) -> Iterator[type[Form]]:
+    for form in kind.__subclasses__():
+        yield form
+        yield from forms_of(form)

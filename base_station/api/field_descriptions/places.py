@@ -22,6 +22,8 @@ FIELDS: Mapping[str, str] = {
     "other_id": "The beacon or tag, or the other unit of a meeting; else empty.",
     "set_ms": "When it was set.",
     "PinView.state": "used, conflict or waiting.",
+    "PinView.text": "What it conflicts with or waits for, in words; empty: it is used.",
+    "PinView.text_code": "Code of that text; null: it has none.",
     "residual_m": "Metres between the pin and the trail; null: not solved yet.",
     "sigmas": "The same in standard deviations of what was expected; null: not solved yet.",
     "reach_m": "From how far the beacon or tag is seen, metres.",

@@ -60,7 +60,7 @@ Target = Annotated[
     Discriminator(
         _kind_of_target,
         custom_error_type="target",
-        custom_error_message="must be one of: unit_id, crew, floor, everyone",
+        custom_error_message="must be one kind of target",
     ),
 ]
 

@@ -634,6 +634,7 @@ export interface PinView {
   residual_m: number | null;
   sigmas: number | null;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface PlanDraft {

@@ -254,6 +254,7 @@ export interface PinView {
   residual_m: number | null;
   sigmas: number | null;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface BeaconView {

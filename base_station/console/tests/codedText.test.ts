@@ -39,6 +39,17 @@ describe("a text of the station", () => {
     );
   });
 
+  test("names a field of a form, and a sensor, as the console does", async () => {
+    await show("de");
+    await loadDeferred();
+    const fault = (field: string) => ({ code: "field-fault", texts: { field, fault: "is missing" }, numbers: {} });
+    expect(codedText(fault("target.crew"), "")).toBe("Trupp: is missing");
+    expect(codedText(fault("unit_ids.2"), "")).toBe("Geräte 3: is missing");
+    expect(codedText(fault("of_a_later_version"), "")).toBe("of_a_later_version: is missing");
+    const subject = { code: "check-subject-of", texts: { subject: "calibration", sensor: "foot" }, numbers: {} };
+    expect(codedText(subject, "")).toBe("Kalibrierung von Fuß");
+  });
+
   test("has texts within it in the chosen language, too", async () => {
     const fault = {
       code: "fault-of",

@@ -25,6 +25,7 @@ from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import ReportedFloor
 from base_station.site.storeys import storey_of
 from shared.clock import NS_PER_S
+from shared.coded_text import Measure, coded
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
 MIN_STD_M = 0.05  # no place is known better
@@ -120,7 +121,15 @@ def place_at(site: SiteState, pin: Pin, t_ns: int) -> PositionConstraint | str:
     """
     beacon = site.beacons.get(pin.other_id) if pin.other_id else None
     if pin.other_id and beacon is None:
-        return f"the place of {pin.kind} {pin.other_id} has not been set"
+        if pin.kind == "tag":
+            return coded(
+                "pin-tag-unplaced", "the place of tag {tag} has not been set", tag=pin.other_id
+            )
+        return coded(
+            "pin-beacon-unplaced",
+            "the place of beacon {beacon} has not been set",
+            beacon=pin.other_id,
+        )
     at: Pin | Beacon = beacon or pin
     assert at.north_m is not None
     assert at.east_m is not None
@@ -147,12 +156,14 @@ def time_of(history: PathHistory, pin: Pin) -> int | str:
     if pin.t_ns == 0:
         return begin_ns
     if pin.t_ns > end_ns + NEAR_NS:
-        return "the unit's path has not come to that time yet"
+        return coded("pin-path-behind", "the unit's path has not come to that time yet")
     if pin.t_ns < begin_ns - BEFORE_NS:
-        early = format_duration((begin_ns - pin.t_ns) / NS_PER_S)
-        return (
-            f"the path that is known begins {early} later: the unit's journal may still bring "
-            "what was before, else give the pin a later time"
+        early_s = (begin_ns - pin.t_ns) / NS_PER_S
+        return coded(
+            "pin-path-later",
+            "the path that is known begins {early_s} later: the unit's journal may still bring "
+            "what was before, else give the pin a later time",
+            early_s=Measure(early_s, format_duration(early_s)),
         )
     return min(max(pin.t_ns, begin_ns), end_ns)
 

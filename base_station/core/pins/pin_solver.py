@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 
 import msgspec
 import numpy as np
@@ -39,10 +40,12 @@ from base_station.fusion.smoothing.interface import (
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
 from shared.clock import NS_PER_S
+from shared.coded_text import Measure, code_of_text, coded
 
 Floats = NDArray[np.float64]
 
 AHEAD_NS = NS_PER_S // 2  # no wearer gets far meanwhile
+_NO_POSITION = coded("pin-no-position", "no position of this unit has come yet")
 SAME_TIME_S = 1.0  # people report times no more exactly
 MEETING_MOST_M = 50.0  # a partner with a larger uncertainty constrains nothing
 
@@ -109,9 +112,9 @@ def solve_pins(
             if places:
                 solution = solver.solve(state, unit_id, places)
         else:
-            waiting = {pin.pin_id: "no position of this unit has come yet" for pin in pins}
+            waiting = {pin.pin_id: _NO_POSITION for pin in pins}
         for pin_id, why in waiting.items():
-            verdicts.setdefault(pin_id, {})[unit_id] = PinVerdict("waiting", text=why)
+            verdicts.setdefault(pin_id, {})[unit_id] = PinVerdict.of("waiting", why)
         results[unit_id] = SolvedUnit(None, [])
         if solution is not None and history is not None:
             for pin_id, verdict in solution.verdicts.items():
@@ -133,10 +136,15 @@ def _store_verdict(site: SiteState, pin_id: str, found: Mapping[str, PinVerdict]
     of_units = {**dict(site.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
     reasons = [one for one in of_units.values() if one.text]
-    worst_reasons = dict.fromkeys(one.text for one in reasons if one.state == worst.state)
-    text = ". ".join(worst_reasons) or next((one.text for one in reasons), "")
-    verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
-    site.pin_verdicts[pin_id] = verdict
+    worst_reasons = dict.fromkeys(one.coded_text for one in reasons if one.state == worst.state)
+    text = reduce(_joined, worst_reasons or [one.coded_text for one in reasons[:1]], "")
+    site.pin_verdicts[pin_id] = msgspec.structs.replace(
+        worst, text=str(text), text_code=code_of_text(text), of_units=tuple(of_units.items())
+    )
+
+
+def _joined(before: str, last: str) -> str:
+    return coded("pin-reasons", "{before}. {last}", before=before, last=last) if before else last
 
 
 _SEVERITY = {"waiting": 0, "used": 1, "conflict": 2}
@@ -224,19 +232,23 @@ def _met(
     """
     t_ns = time_of(history, pin)
     if isinstance(t_ns, str):
-        return f"{unit_id}: {t_ns}"
+        return _of_unit(unit_id, t_ns)
     other_id = pin.other_id if pin.unit_id == unit_id else pin.unit_id
     other = state.paths.get(other_id)
     if other is None or other.begin_ns is None:
-        return f"no position of {other_id} has come yet"
+        return coded("pin-no-position-of", "no position of {unit} has come yet", unit=other_id)
     there_ns = time_of(other, pin)
     if isinstance(there_ns, str):
-        return f"{other_id}: {there_ns}"
+        return _of_unit(other_id, there_ns)
     path = solver.alone(state, other_id, other)
     row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
     spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
     if spread_m > MEETING_MOST_M:
-        return f"the position of {other_id} was not known well enough"
+        return coded(
+            "pin-position-poor",
+            "the position of {unit} was not known well enough",
+            unit=other_id,
+        )
     return PositionConstraint(
         name=pin.pin_id,
         t_ns=t_ns,
@@ -247,6 +259,10 @@ def _met(
         down_std_m=math.hypot(ON_FLOOR_STD_M, float(path.std_down_m[row])),
         source=other_id,
     )
+
+
+def _of_unit(unit_id: str, reason: str) -> str:
+    return coded("pin-reason-of-unit", "{unit}: {reason}", unit=unit_id, reason=reason)
 
 
 def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
@@ -262,19 +278,63 @@ def _verdict_of(site: SiteState, pin_id: str, unit_id: str, verdict: Verdict) ->
     """Verdict of a pin for one unit's path, with a text for a person."""
     if verdict.used:
         return PinVerdict("used", verdict.residual_m, verdict.sigmas)
-    pin, other = site.pins[pin_id], site.pins.get(verdict.against)
-    path, of = "the path walked", ""
-    if pin.kind == "meeting":
-        path, of = f"the path of {unit_id}", f" for {unit_id}"
-    against = f"{path} and the satellite fixes"
-    if other is not None:
-        against = f"{_describe(other, pin)} and {path}"
-    away, end = f"{verdict.residual_m:.0f} m from", f"kept, and not used{of}"
+    text = _conflict_text(site.pins[pin_id], site.pins.get(verdict.against), unit_id, verdict)
+    return PinVerdict.of("conflict", text, verdict.residual_m, verdict.sigmas)
+
+
+def _conflict_text(pin: Pin, other: Pin | None, unit_id: str, verdict: Verdict) -> str:
+    """``other``: the pin that it contradicts; None: no single one."""
+    is_meeting = pin.kind == "meeting"
+    path = (
+        coded("pin-path-of", "the path of {unit}", unit=unit_id)
+        if is_meeting
+        else coded("pin-path-walked", "the path walked")
+    )
+    against = (
+        coded("pin-against-fixes", "{path} and the satellite fixes", path=path)
+        if other is None
+        else coded("pin-against-pin", "{pin} and {path}", pin=_describe(other, pin), path=path)
+    )
+    away = Measure(verdict.residual_m, f"{verdict.residual_m:.0f} m")
+    times = round(verdict.sigmas)
+    if verdict.above_m > 0.0:
+        return coded(
+            "pin-conflict-above",
+            "{away_m} above where {against} lead: {times} times what is to be expected; kept, and "
+            "not used for {unit} unless another pin confirms it",
+            away_m=away,
+            against=against,
+            times=times,
+            unit=unit_id,
+        )
     if verdict.above_m:
-        away = f"{verdict.residual_m:.0f} m {'above' if verdict.above_m > 0.0 else 'below'}"
-        end += " unless another pin confirms it"
-    text = f"{away} where {against} lead: {verdict.sigmas:.0f} times what is to be expected; {end}"
-    return PinVerdict("conflict", verdict.residual_m, verdict.sigmas, text)
+        return coded(
+            "pin-conflict-below",
+            "{away_m} below where {against} lead: {times} times what is to be expected; kept, and "
+            "not used for {unit} unless another pin confirms it",
+            away_m=away,
+            against=against,
+            times=times,
+            unit=unit_id,
+        )
+    if is_meeting:
+        return coded(
+            "pin-conflict-meeting",
+            "{away_m} from where {against} lead: {times} times what is to be expected; kept, and "
+            "not used for {unit}",
+            away_m=away,
+            against=against,
+            times=times,
+            unit=unit_id,
+        )
+    return coded(
+        "pin-conflict",
+        "{away_m} from where {against} lead: {times} times what is to be expected; kept, and not "
+        "used",
+        away_m=away,
+        against=against,
+        times=times,
+    )
 
 
 def _describe(pin: Pin, of: Pin) -> str:
@@ -282,18 +342,24 @@ def _describe(pin: Pin, of: Pin) -> str:
     where the path begins has no time.
     """
     if pin.kind == "meeting":
-        name = f"the meeting with {pin.unit_id if pin.unit_id != of.unit_id else pin.other_id}"
-    elif pin.other_id:
-        name = f"{pin.kind} {pin.other_id}"
+        partner = pin.unit_id if pin.unit_id != of.unit_id else pin.other_id
+        name = coded("pin-named-meeting", "the meeting with {unit}", unit=partner)
+    elif pin.kind == "beacon":
+        name = coded("pin-named-beacon", "beacon {beacon}", beacon=pin.other_id)
+    elif pin.kind == "tag":
+        name = coded("pin-named-tag", "tag {tag}", tag=pin.other_id)
     elif pin.note:
-        return f"the pin {pin.note!r}"
+        return coded("pin-named-note", "the pin '{note}'", note=pin.note)
     elif pin.t_ns == 0:
-        return "the pin at the start"
+        return coded("pin-named-start", "the pin at the start")
     else:
-        name = "the pin"
+        name = coded("pin-named", "the pin")
     if pin.t_ns == 0 or of.t_ns == 0:
         return name
     apart_s = abs(of.t_ns - pin.t_ns) / NS_PER_S
     if apart_s < SAME_TIME_S:
-        return f"{name} of the same time"
-    return f"{name} of {format_duration(apart_s)} {'before' if pin.t_ns < of.t_ns else 'after'}"
+        return coded("pin-same-time", "{pin} of the same time", pin=name)
+    apart = Measure(apart_s, format_duration(apart_s))
+    if pin.t_ns < of.t_ns:
+        return coded("pin-before", "{pin} of {apart_s} before", pin=name, apart_s=apart)
+    return coded("pin-after", "{pin} of {apart_s} after", pin=name, apart_s=apart)

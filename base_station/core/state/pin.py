@@ -9,6 +9,8 @@ from typing import Literal
 
 import msgspec
 
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_with_code
+
 PinKind = Literal["place", "start", "meeting", "beacon", "tag"]
 PinState = Literal["used", "conflict", "waiting"]
 
@@ -41,6 +43,23 @@ class PinVerdict(msgspec.Struct, frozen=True):
     sigmas: float | None = None  # the same in standard deviations of the expected place
     text: str = ""  # for a person: its conflict, or the reason why it waits
     of_units: tuple[tuple[str, PinVerdict], ...] = ()  # verdict of each unit that it is about
+    text_code: TextCode = NO_CODE
+
+    @classmethod
+    def of(
+        cls,
+        state: PinState,
+        text: str,
+        residual_m: float | None = None,
+        sigmas: float | None = None,
+    ) -> PinVerdict:
+        """A verdict with a text that may have its code with it."""
+        return cls(state, residual_m, sigmas, str(text), text_code=code_of_text(text))
+
+    @property
+    def coded_text(self) -> str:
+        """``text`` with its code."""
+        return text_with_code(self.text, self.text_code)
 
 
 class Beacon(msgspec.Struct):
@@ -63,4 +82,4 @@ def reach_std_m(reach_m: float) -> float:
     return max(reach_m / 2.0, 0.3)
 
 
-WAITING = PinVerdict("waiting", text="not solved yet")
+WAITING = PinVerdict.of("waiting", coded("pin-not-solved", "not solved yet"))

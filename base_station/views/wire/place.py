@@ -8,6 +8,7 @@ import msgspec
 
 from base_station.views.answer import Answer
 from base_station.views.wire.schema import one_of, shown_as
+from base_station.views.wire.text_code import TextCodeView
 
 
 class PinView(Answer, frozen=True):
@@ -31,6 +32,7 @@ class PinView(Answer, frozen=True):
     residual_m: float | None  # between the pin and the trail
     sigmas: float | None  # the same in standard deviations of the expectation
     text: str  # for a person: what it conflicts with, or what it waits for
+    text_code: TextCodeView | None = None  # of ``text``, where it has one
 
 
 class BeaconView(Answer, frozen=True):

@@ -12,6 +12,7 @@ const PARTS = [
   "unit_check",
   "coded_reason",
   "drawing_note",
+  "pin_reason",
   "refusal_access",
   "refusal_people",
   "refusal_incident",
@@ -48,8 +49,27 @@ function valuesOf({ texts, numbers }: TextCodeView): Record<string, string | num
 }
 
 function inWords(name: string, text: string, code: TextCodeView): string {
-  if (name !== "tracker_reasons") return codedText(code, text);
-  return listed(text.split(",").map((reason) => label("tracker_reason", reason)));
+  switch (name) {
+    case "tracker_reasons":
+      return listed(text.split(",").map((reason) => label("tracker_reason", reason)));
+    case "sensor":
+      return code.code === "" ? (knownLabel("worn", text) ?? text) : codedText(code, text);
+    case "field":
+      return fieldLabel(text);
+    default:
+      return codedText(code, text);
+  }
+}
+
+/** The label of a field by its place in the request, such as `unit_ids.2`: the innermost that has one, and
+ * the number of an entry. */
+function fieldLabel(place: string): string {
+  const parts = place.split(".");
+  const at = parts.findLastIndex((part) => knownLabel("field_label", part) !== undefined);
+  if (at < 0) return place;
+  const words = knownLabel("field_label", parts[at]!) ?? place;
+  const entry = Number(parts[at + 1]);
+  return Number.isInteger(entry) ? `${words} ${entry + 1}` : words;
 }
 
 /** The code of a parameter: "reason:" has it, "reason:away_s" a parameter of its own. */

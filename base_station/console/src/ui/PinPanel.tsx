@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { attempt } from "../sessions";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
+import { codedText } from "../live/codedText";
 import { displayName, nameAmong } from "../live/urgency";
 import { putDown } from "../plan/tools";
 import type { PinView, UnitView } from "../wire";
@@ -82,7 +83,7 @@ function Verdict({ pin }: { pin: PinView }) {
           ? t("pin.verdict", { state })
           : t("pin.off", { state, distance: length(pin.residual_m) })}
       </strong>{" "}
-      {pin.text === "" ? "" : `${pin.text}. `}
+      {pin.text === "" ? "" : `${codedText(pin.text_code ?? undefined, pin.text)}. `}
       <span class="quiet">{t("pin.set_by", { who: pin.by, time: clockTime(pin.set_ms) })}</span>
     </p>
   );

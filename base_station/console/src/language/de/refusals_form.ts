@@ -28,6 +28,8 @@ export const refusal_form: Part<"refusal_form"> = {
     "muss ein Text sein",
   "field-empty":
     "ist leer; füllen Sie es aus",
+  "field-target":
+    "müssen ein Gerät, ein Trupp, ein Geschoss oder alle sein",
   "field-choice":
     "muss eines davon sein: {allowed}",
   "field-too-short":

@@ -26,6 +26,8 @@ export const refusal_form = {
     "must be text",
   "field-empty":
     "is empty; fill it in",
+  "field-target":
+    "must be a unit, a crew, a floor or everyone",
   "field-choice":
     "must be one of {allowed}",
   "field-too-short":

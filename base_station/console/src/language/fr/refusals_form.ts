@@ -28,6 +28,8 @@ export const refusal_form: Part<"refusal_form"> = {
     "doit être un texte",
   "field-empty":
     "est vide\u00a0; remplissez ce champ",
+  "field-target":
+    "doivent être une unité, une équipe, un étage ou tous",
   "field-choice":
     "doit être l’un de ceux-ci\u00a0: {allowed}",
   "field-too-short":

@@ -182,6 +182,11 @@ def test_contradicting_pin_is_kept_and_moves_no_member(walk: Walk) -> None:
     verdict = walk.script.pipeline.state.site.pin_verdicts["bad"]
     assert verdict.state == "conflict"
     assert "not used" in verdict.text
+    code = verdict.text_code
+    assert code.code == "pin-conflict"
+    assert code.texts["against:"] == "pin-against-fixes"
+    assert code.texts["against:path:"] == "pin-path-walked"
+    assert code.numbers["away_m"] == verdict.residual_m
     assert verdict.residual_m == pytest.approx(200.0, abs=10.0)
     assert walk.state("p1") == "used"
     assert walk.now_off_m("FF-01") == pytest.approx(before, abs=1e-9)
