@@ -28,6 +28,8 @@ from tests.rig.waiting import until
 BUCKET = "muster"
 ADDRESS = f"s3://{BUCKET}/station"
 _PARTS = ("s3", "master", "volume", "filer")
+# They have ports of their own, so that a second server would end.
+_WITHOUT_CATALOGS = ("-s3.port.iceberg", "0", "-s3.port.lance", "0")
 _ATTEMPTS = 3
 _START_S = 60.0  # of a busy machine
 _END_WITH_PARENT = """
@@ -85,6 +87,7 @@ class BucketServer:
             *(sys.executable, "-c", _END_WITH_PARENT, str(program), "server"),
             *("-dir", str(self._folder / "data"), "-ip", self._host, "-ip.bind", self._host),
             *("-filer", "-s3", "-s3.config", str(self._folder / "s3.json"), *flags),
+            *_WITHOUT_CATALOGS,
             *(
                 "-master.volumeSizeLimitMB",
                 "64",
