@@ -45,6 +45,7 @@ from base_station.standby.erasure_handover import WaitingErasure
 from base_station.standby.mode import HaMode, Paired, Parts, Standalone
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.replicated_tables import ReplicatedTables
+from base_station.storage.db.unfinished_erasures import UnfinishedErasures
 from base_station.unit_sync.clock_server import ClockServer
 from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.views.station import StationFacts
@@ -147,6 +148,7 @@ class RunningStation:
             start_again=self._restarts.request,
             step_again=self._restarts.note_repaired,
             erasures=self._waiting_erasures,
+            unfinished_erasures=UnfinishedErasures(disk.store).look,
             forget=self._erase_for_peer,
         )
         standby = resources.config.standby

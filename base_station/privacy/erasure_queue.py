@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -24,6 +25,9 @@ from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
 
 _log = logging.getLogger(__name__)
+_OTHER_HAS_IT = (
+    "The other station of the pair has all of it until this one is started and the two are linked"
+)
 _AGAIN_S = 10.0  # after a failure of disk or store, or while there is an obstacle
 
 
@@ -204,8 +208,8 @@ def erase_now(
         jobs.note(job, save=True, **_counts(progress))
     if service.is_of_pair():  # done again by a station that can order it of the other one
         jobs.note(job, save=True, state=ErasureState.WAITING, problem="", share=0.0)
-    else:
-        jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
+        return replace(done, kept=(*done.kept, _OTHER_HAS_IT))
+    jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
     return done
 
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable, Sequence
 from concurrent.futures import Future
+from operator import itemgetter
 from pathlib import Path
 from typing import Protocol
 
@@ -19,6 +20,8 @@ import msgspec
 
 from base_station.core.erasure.erasure import (
     Erasure,
+    Record,
+    Wearing,
     actions_of,
     erasure_of_person,
 )
@@ -40,12 +43,14 @@ from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import (
     FORGOT_INCIDENT,
+    FORGOT_PERSON,
     INCIDENT,
     erased_incidents,
     forget_in,
     known_names,
     wearings_of,
 )
+from base_station.storage.db.lost_actions import lost_actions, worn_in
 from base_station.storage.db.records import Records
 from base_station.storage.imports import ImportFolder
 from shared.clock import Clock
@@ -55,6 +60,7 @@ from shared.messages.station import (
     Action,
     BeginErasure,
     ForgetWearers,
+    OpenIncident,
     TakeOver,
 )
 
@@ -63,6 +69,10 @@ BY_OTHER_STATION = "the other station"  # requests here the erasures done there
 RADIO_KEPT = (
     "What was recorded of the radio while another incident was open stays until that is forgotten, "
     "too: nobody can tell who of them speaks"
+)
+IMPORTS_KEPT = (
+    "Files that were brought in stay as they came, with people and voices in them: take out those "
+    "that have the person"
 )
 PERSON = "person"
 _ACTED_WITHIN_S = 20.0
@@ -186,13 +196,19 @@ class ErasureService:
     def _with_lost_wearings(self, found: Erasure, until_ns: int) -> Erasure:
         """With the times that only the tables know, where a part of the log is gone."""
         with self._store.read() as session:
-            known = wearings_of(session, found.person_id, until_ns)
-        wearings = {*found.wearings, *known}
-        in_order = sorted(wearings, key=lambda one: (one.from_ns, one.unit_id, one.until_ns))
-        return msgspec.structs.replace(found, wearings=tuple(in_order))
+            return _with_wearings(found, wearings_of(session, found.person_id, until_ns))
 
     def _erasure_of_incident(self, incident_id: str, order: ErasureOrder | None) -> Erasure:
-        actions = actions_before(self._reading.actions(), order)
+        in_log = self._reading.actions()
+        actions = actions_before(in_log, order)
+        if self._reading.is_whole() or _opens(incident_id, actions):
+            return self._scanned(incident_id, actions)
+        with self._store.read() as session:
+            lost = lost_actions(session, {one.action_id for _, one in actions_of(in_log)})
+            found = self._scanned(incident_id, sorted((*lost, *actions), key=itemgetter(0)))
+            return _with_wearings(found, worn_in(session, incident_id))
+
+    def _scanned(self, incident_id: str, actions: Sequence[Record]) -> Erasure:
         return erasure_of_incident(
             actions,
             incident_id,
@@ -251,12 +267,14 @@ class ErasureService:
         progress.files += self._store.compact()
         if erasure.incident_id:
             progress.files += self._imports.remove_all(erasure.incident_id)
+        elif any(self._imports.files()):
+            progress.kept = (IMPORTS_KEPT,)
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.remove(erasure.incident_id)
         done = ErasureResult(
             what, progress.records, progress.files, progress.damaged, progress.kept
         )
-        kind = "ForgotPerson" if erasure.person_id else FORGOT_INCIDENT
+        kind = FORGOT_PERSON if erasure.person_id else FORGOT_INCIDENT
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
         return done
@@ -293,6 +311,17 @@ class ErasureService:
             files = sum(1 for path in folder.rglob("*") if path.is_file())
             _remove(folder)
             progress.files += files
+
+
+def _with_wearings(found: Erasure, known: Iterable[Wearing]) -> Erasure:
+    wearings = {*found.wearings, *known}
+    in_order = sorted(wearings, key=lambda one: (one.from_ns, one.unit_id, one.until_ns))
+    return msgspec.structs.replace(found, wearings=tuple(in_order))
+
+
+def _opens(incident_id: str, actions: Iterable[Record]) -> bool:
+    opened = (one.action for _, one in actions_of(actions) if isinstance(one.action, OpenIncident))
+    return any(one.incident_id == incident_id for one in opened)
 
 
 def _unknown(person_id: str) -> UserError:

@@ -1,5 +1,6 @@
 """Hand-over of erasures: an erasure is ordered in the log, and only the station that leads writes
-there.  What was requested of a station that follows by now is fetched, and ordered, by the leader.
+there.  What was requested of a station that follows by now is fetched, and ordered, by the leader;
+and what a leader that is lost has ordered and not finished is ordered again.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import msgspec
 
 from base_station.standby.protocol import pack, unpack
 from base_station.standby.rpc import RpcServer, ask
+from base_station.storage.db.unfinished_erasures import UnfinishedErasure
 from shared.bus import Bus
 
 
@@ -37,26 +39,43 @@ class ErasureServer(RpcServer):
 
 
 class ErasureHandover:
-    """Takes over the other station's waiting erasures in rounds, each once."""
+    """Takes over the erasures that another station has not finished, in rounds, each once."""
 
     def __init__(
-        self, bus: Bus, other: Callable[[], str | None], take: Callable[[str], None]
+        self,
+        bus: Bus,
+        leads: Callable[[], bool],
+        other: Callable[[], str | None],
+        unfinished: Callable[[], Iterable[UnfinishedErasure]],
+        take: Callable[[str], None],
     ) -> None:
-        """``other``: the station that follows this one; None: this one does not lead, or is alone.
-        ``take`` receives "person ID" or "incident ID", and again if it raises.
+        """``other``: the other station, where it answers.  ``unfinished``: orders of former
+        leaders, as the log has them.  ``take`` receives "person ID" or "incident ID", and again if
+        it raises.
         """
         self._bus = bus
+        self._leads = leads
         self._other = other
+        self._unfinished = unfinished
         self._take = take
-        self._taken: set[str] = set()  # by request
+        self._taken: set[str] = set()  # by request or order
 
     def look(self, _stop: Event) -> None:
-        """One round.  Raises MusterError where the other station's answer makes no sense."""
+        """One round.  Raises MusterError where a store fails, or the other station's answer makes
+        no sense.
+        """
+        if not self._leads():
+            return
+        for left in self._unfinished():
+            self._take_once(left.order_id, left.subject)
         station = self._other()
         if station is None:
             return
         for answer in ask(self._bus, station, "erasures"):
             one = unpack(answer, WaitingErasure)
-            if one.request_id not in self._taken:
-                self._take(f"{one.kind} {one.subject_id}")
-                self._taken.add(one.request_id)
+            self._take_once(one.request_id, f"{one.kind} {one.subject_id}")
+
+    def _take_once(self, request_id: str, subject: str) -> None:
+        if request_id not in self._taken:
+            self._take(subject)
+            self._taken.add(request_id)

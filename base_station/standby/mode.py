@@ -31,6 +31,7 @@ from base_station.standby.sync_ack import LeaderOnlyGate
 from base_station.standby.table_replication import TableReplication, TableServer
 from base_station.storage.db.records import Records
 from base_station.storage.db.replicated_tables import ReplicatedTables
+from base_station.storage.db.unfinished_erasures import UnfinishedErasure
 from base_station.storage.integrity_checker import IntegrityChecker
 from shared.bus import Bus
 from shared.messages import STATION_ID
@@ -58,6 +59,8 @@ class Parts:
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing
     erasures: Callable[[], Iterable[WaitingErasure]]  # that wait for a station that leads
+    # Ordered by a former leader that has not reported that they are done.
+    unfinished_erasures: Callable[[], Iterable[UnfinishedErasure]]
     forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
 
 
@@ -221,7 +224,11 @@ class Paired:
             parts.bus, parts.files, parts.check, pair.reachable_peer, parts.step_again
         )
         handover = ErasureHandover(
-            parts.bus, lambda: pair.reachable_peer() if pair.leads else None, parts.forget
+            parts.bus,
+            lambda: pair.leads,
+            pair.reachable_peer,
+            parts.unfinished_erasures,
+            parts.forget,
         )
         threads = (
             pair,
@@ -229,7 +236,7 @@ class Paired:
                 "replication", 1.0, copying.look, "the other station's accounts are not copied"
             ),
             Worker.periodic(
-                "erasures", 2.0, handover.look, "erasures that wait at the other are not ordered"
+                "erasures", 2.0, handover.look, "erasures of the other one are not ordered again"
             ),
             Worker.periodic(
                 "mending", 5.0, mending.look, "the log is not mended from the other station"

@@ -20,12 +20,13 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.registry import Registry
 from base_station.standby.protocol import pack, unpack
 from base_station.standby.rpc import RpcServer, ask
+from base_station.storage.db.erasure import FORGOT_INCIDENT, FORGOT_PERSON
 from base_station.storage.db.replicated_rows import ReplicatedRows, Row
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from shared.bus import Bus
 
 _AUDIT_ENTRIES = 500
-_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as in base_station.privacy.erasure_service
+_FORGOTTEN = FORGOT_PERSON, FORGOT_INCIDENT
 
 
 class TableServer(RpcServer):

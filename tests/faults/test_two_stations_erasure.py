@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
+from base_station.cli import app
 from tests.bench.standby.station_of_pair import Place, Station
 from tests.bench.standby.two_stations import TwoStations
 from tests.rig.erasure_scenario import names_in, some_photo, stored_in
@@ -138,3 +140,47 @@ def test_erasure_reaches_the_station_that_was_off_and_its_copies(
         lambda: done(two.first) and len(two.first.get("/forgettings")) == both,
     )
     end_and_compare(two, photo, two.first)
+
+
+def test_erasure_of_a_leader_that_is_lost_in_the_middle_is_finished_by_the_other(
+    two: TwoStations,
+) -> None:
+    person_id, photo = record_incident(two)
+    recordings = two.first.data / "recordings"
+    recordings.mkdir(exist_ok=True)
+    (recordings / "anna").touch()  # no folder: removing it is tried for 20 s
+    two.first.post(f"/people/{person_id}/forget", {"name": NAME})
+    wait_until("the second has the order", lambda: "BeginErasure" in audited(two.second))
+    two.first.kill()
+    assert "ForgotPerson" not in audited(two.second)
+    assert left_of(two.second, photo)
+    wait_until("the second leads", two.second.leads)
+    wait_until("the second has forgotten", lambda: done(two.second))
+    assert left_of(two.second, photo) == []
+    assert names_in(stored_in(two.second.data), OTHER)
+    assert "ForgotPerson" in audited(two.second)
+
+
+def test_erasure_by_command_on_a_stopped_station_reaches_the_other_when_both_run(
+    two: TwoStations,
+) -> None:
+    person_id, photo = record_incident(two)
+    call(two.first, "DELETE", "/assignments/anna")
+    two.second.kill()
+    two.first.stop()
+    flags = ["forget", person_id, "--data", str(two.first.data)]
+    told = CliRunner().invoke(app, flags, input=f"{person_id}\n")
+    assert told.exit_code == 0, told.output
+    assert "until this one is started and the two are linked" in " ".join(told.output.split())
+    assert left_of(two.first, photo) == []
+    two.second.start()
+    wait_until("the second leads", two.second.leads)
+    assert left_of(two.second, photo), "nobody has told it"
+    two.first.start()
+    wait_until("the first follows", two.first.follows)
+    wait_until("both have forgotten", lambda: done(two.first) and done(two.second))
+    end_and_compare(two, photo, two.first)
+
+
+def audited(at: Station) -> list[str]:
+    return [one["action"] for one in at.get("/audit")]

@@ -156,3 +156,41 @@ def test_audio_that_the_station_has_deleted_goes_from_the_backup_too(
         assert RadioLog(backup / "radio").channels() == ()
     finally:
         moved.rename(data / "radio")
+
+
+def test_audio_of_another_station_is_erased_with_the_incident_that_it_was_brought_into(
+    data: Path, tmp_path: Path
+) -> None:
+    """A file that was brought in is evidence: erasing a person leaves it, and says so."""
+    file = tmp_path / "whole.mcap"
+    muster("export", "i1", file, "--data", data, "--radio")
+    here = new_folder(tmp_path / "here", "i7", 60)
+    before, brought_in = contents_of(here), file.read_bytes()
+    pieces = [one for one in pieces_of(brought_in) if one not in before]
+    assert len(pieces) > 10
+    muster("import", "i7", file, "--data", here)
+    assert brought_in in contents_of(here)
+    told = forget(here, "ada0")
+    assert "take out those that have the person" in told
+    assert brought_in in contents_of(here)
+    told = forget(here, "i7")
+    assert "take out" not in told
+    left = contents_of(here)
+    assert not [one for one in pieces if one in left]
+
+
+def forget(folder: Path, subject: str) -> str:
+    flags = ["forget", subject, "--data", str(folder)]
+    result = CliRunner().invoke(app, flags, input=f"{subject}\n")
+    assert result.exit_code == 0, (result.output, result.exception)
+    return " ".join(result.output.split())
+
+
+def contents_of(folder: Path) -> bytes:
+    return b"".join(path.read_bytes() for path in folder.rglob("*") if path.is_file())
+
+
+def pieces_of(content: bytes, size: int = 64) -> list[bytes]:
+    """Pieces out of all of it, those of one value left out."""
+    pieces = (content[at : at + size] for at in range(0, len(content) - size, 997))
+    return [one for one in pieces if len({*one}) > size // 4]

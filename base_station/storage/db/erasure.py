@@ -49,9 +49,8 @@ from shared.messages.station import (
     SendCommand,
 )
 
-FORGOT_INCIDENT = (
-    "ForgotIncident"  # action of the audit; its detail begins with INCIDENT and the id
-)
+# Actions of the audit; the detail begins with PERSON or INCIDENT and the id.
+FORGOT_PERSON, FORGOT_INCIDENT = "ForgotPerson", "ForgotIncident"
 INCIDENT = "incident"
 _APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
 _WITH_WORDS: dict[str, type[SendCommand | CheckIn | ResolveAlarm]] = {

@@ -18,11 +18,11 @@ from base_station.archive.store import ArchiveStore, FolderStore, open_store
 from base_station.cli import app
 from base_station.engine.log_feed import FolderFeed
 from base_station.storage.db.archived import ArchivedCopies
-from base_station.storage.db.models import TrackPoint
+from base_station.storage.db.models import Assignment, TrackPoint
 from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
 from shared.clock import NS_PER_S, SystemClock
-from shared.mcap_log import LogRecord, SegmentWriter, segment_paths
+from shared.mcap_log import LogRecord, SegmentReader, SegmentWriter, segment_paths
 from shared.messages.station import CloseIncident
 from tests.integration.archive.test_copying import note_segments
 from tests.rig.archived_station import succeeded
@@ -239,3 +239,48 @@ def test_station_reports_copies_with_erased_people_until_the_archive_is_back(
 
 def problems_of(browser: Browser) -> str:
     return str(browser.call("GET", "/health")["problems"])
+
+
+@pytest.mark.parametrize("left", [-1, 1], ids=["log of its end", "log of all but its beginning"])
+def test_incident_whose_opening_is_lost_is_erased_as_with_it(
+    closed: Path, tmp_path: Path, left: int
+) -> None:
+    """Who was in it is known from the audit."""
+    whole, folder = tmp_path / "whole", tmp_path / "archive"
+    shutil.copytree(closed, whole)
+    forget("i1", whole)
+    succeeded("archive", "copy", folder, "--data", closed)
+    archive = open_store(str(folder))
+    kept = records_of(archive, "i2")
+    segments = segment_paths(closed / "log")
+    for segment in segments[:left]:
+        segment.unlink()
+
+    forget("i1", closed)
+    names = [one.name for one in segments[left:]]
+    for name in names:
+        assert records_in(closed / "log" / name) == records_in(whole / "log" / name), name
+    assert assigned(closed) == assigned(whole)
+    assert tracks(closed) == tracks(whole)
+    succeeded("archive", "copy", folder, "--data", closed)
+    assert not outdated(closed)
+    assert not [one for one in records_of(archive, "i1") if b"ada0" in one[2]]
+    assert records_of(archive, "i2") == kept
+    assert ": 0 defects" in succeeded("archive", "verify", folder)
+
+
+def records_in(segment: Path) -> list[LogRecord]:
+    with SegmentReader(segment) as reader:
+        return list(reader.records())
+
+
+def assigned(data: Path) -> list[tuple[str, str, int, int | None]]:
+    with Store(data / "station.sqlite") as store, store.read() as session:
+        rows = session.scalars(select(Assignment).order_by(Assignment.unit_id, Assignment.from_ns))
+        return [(one.unit_id, one.person_id, one.from_ns, one.until_ns) for one in rows]
+
+
+def tracks(data: Path) -> list[tuple[str, int]]:
+    with Store(data / "station.sqlite") as store, store.read() as session:
+        rows = session.scalars(select(TrackPoint).order_by(TrackPoint.unit_id, TrackPoint.t_ns))
+        return [(one.unit_id, one.t_ns) for one in rows]

@@ -1,0 +1,100 @@
+"""Erasures that another station has not finished are taken over by the one that leads."""
+
+from __future__ import annotations
+
+from threading import Event
+
+import pytest
+
+from base_station.standby.erasure_handover import (
+    ErasureHandover,
+    ErasureServer,
+    WaitingErasure,
+)
+from base_station.standby.rpc import RpcServer
+from base_station.storage.db.unfinished_erasures import UnfinishedErasure
+from shared.bus_memory import MemoryRouter
+from shared.errors import MusterError, StoreError
+
+ANA, FIRE = WaitingErasure("r1", "person", "ana"), WaitingErasure("r2", "incident", "i1")
+STOP = Event()
+
+
+class Pair:
+    """The first leads, and the second has erasures that wait."""
+
+    def __init__(self) -> None:
+        self.leads = True
+        self.other: str | None = "second"
+        self.waiting = [ANA, FIRE]
+        self.unfinished: list[UnfinishedErasure] = []
+        self.taken: list[str] = []
+        self.failures = 0
+        self.router = MemoryRouter()
+        self.bus = self.router.attach_station()
+        self.handover = ErasureHandover(
+            self.bus, lambda: self.leads, lambda: self.other, lambda: self.unfinished, self.take
+        )
+
+    def serve(self) -> ErasureServer:
+        return ErasureServer("second", self.router.attach_station(), lambda: self.waiting)
+
+    def take(self, subject: str) -> None:
+        if self.failures:
+            self.failures -= 1
+            raise StoreError("the disk is full")
+        self.taken.append(subject)
+
+    def look(self) -> list[str]:
+        self.handover.look(STOP)
+        return self.taken
+
+
+@pytest.fixture
+def pair() -> Pair:
+    return Pair()
+
+
+def test_waiting_erasures_of_the_other_are_taken_once(pair: Pair) -> None:
+    pair.serve()
+    assert pair.look() == ["person ana", "incident i1"]
+    pair.waiting.append(WaitingErasure("r3", "person", "ana"))  # requested again later
+    assert pair.look() == ["person ana", "incident i1", "person ana"]
+
+
+def test_station_that_follows_takes_none(pair: Pair) -> None:
+    pair.serve()
+    pair.leads = False
+    pair.unfinished = [UnfinishedErasure("o1", "person bo")]
+    assert pair.look() == []
+
+
+def test_erasure_that_could_not_be_noted_is_taken_again(pair: Pair) -> None:
+    pair.serve()
+    pair.failures = 1
+    with pytest.raises(StoreError):
+        pair.look()
+    assert pair.look() == ["person ana", "incident i1"]
+
+
+def test_order_of_a_lost_leader_is_taken_without_the_other_station(pair: Pair) -> None:
+    pair.other = None
+    pair.unfinished = [UnfinishedErasure("o1", "person bo")]
+    assert pair.look() == ["person bo"]
+    assert pair.look() == ["person bo"]
+
+
+def test_station_that_does_not_answer_has_none_to_take(pair: Pair) -> None:
+    assert pair.look() == []
+
+
+def test_answer_that_makes_no_sense_is_refused(pair: Pair) -> None:
+    RpcServer("second", pair.router.attach_station(), {"erasures": lambda *_: iter([b"\xc1"])})
+    with pytest.raises(MusterError):
+        pair.look()
+    assert pair.taken == []
+
+
+def test_server_that_is_closed_answers_no_more(pair: Pair) -> None:
+    pair.serve().close()
+    assert pair.look() == []
