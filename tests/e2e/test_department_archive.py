@@ -108,7 +108,7 @@ def test_officer_opens_a_past_incident_from_the_bucket(
     replay.close()
 
 
-def test_officer_is_told_why_a_past_incident_does_not_open(
+def test_page_shows_why_a_past_incident_does_not_open(
     page: Page, place: Place, tmp_path: Path
 ) -> None:
     """One that was never copied; and one of a bucket that is away, which opens when it is back."""

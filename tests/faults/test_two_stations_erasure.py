@@ -169,13 +169,13 @@ def test_erasure_by_command_on_a_stopped_station_reaches_the_other_when_both_run
     two.second.kill()
     two.first.stop()
     flags = ["forget", person_id, "--data", str(two.first.data)]
-    told = CliRunner().invoke(app, flags, input=f"{person_id}\n")
-    assert told.exit_code == 0, told.output
-    assert "until this one is started and the two are linked" in " ".join(told.output.split())
+    printed = CliRunner().invoke(app, flags, input=f"{person_id}\n")
+    assert printed.exit_code == 0, printed.output
+    assert "until this one is started and the two are linked" in " ".join(printed.output.split())
     assert left_of(two.first, photo) == []
     two.second.start()
     wait_until("the second leads", two.second.leads)
-    assert left_of(two.second, photo), "nobody has told it"
+    assert left_of(two.second, photo), "it has no request"
     two.first.start()
     wait_until("the first follows", two.first.follows)
     wait_until("both have forgotten", lambda: done(two.first) and done(two.second))

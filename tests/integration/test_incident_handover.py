@@ -170,11 +170,11 @@ def test_audio_of_another_station_is_erased_with_the_incident_that_it_was_brough
     assert len(pieces) > 10
     muster("import", "i7", file, "--data", here)
     assert brought_in in contents_of(here)
-    told = forget(here, "ada0")
-    assert "take out those that have the person" in told
+    printed = forget(here, "ada0")
+    assert "take out those that have the person" in printed
     assert brought_in in contents_of(here)
-    told = forget(here, "i7")
-    assert "take out" not in told
+    printed = forget(here, "i7")
+    assert "take out" not in printed
     left = contents_of(here)
     assert not [one for one in pieces if one in left]
 

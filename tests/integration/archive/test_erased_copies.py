@@ -245,7 +245,7 @@ def problems_of(browser: Browser) -> str:
 def test_incident_whose_opening_is_lost_is_erased_as_with_it(
     closed: Path, tmp_path: Path, left: int
 ) -> None:
-    """Who was in it is known from the audit."""
+    """The audit has its members."""
     whole, folder = tmp_path / "whole", tmp_path / "archive"
     shutil.copytree(closed, whole)
     forget("i1", whole)
