@@ -14,13 +14,27 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
-from base_station.privacy.erasure_service import BY_OTHER_STATION, PERSON, ErasureService
+from base_station.privacy.erasure_service import (
+    BY_OTHER_STATION,
+    PERSON,
+    RADIO_KEPT,
+    ErasureService,
+)
 from base_station.storage.job_queue import JobList, JobQueue
-from shared.coded_text import Term, coded
+from shared.coded_text import (
+    NO_CODE,
+    Term,
+    TextCode,
+    code_of_text,
+    coded,
+    text_of_error,
+    text_with_code,
+)
 from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
 
@@ -57,6 +71,7 @@ class ErasureJob(msgspec.Struct):
     damaged: tuple[str, ...] = ()  # parts of the log, and their results
     kept: tuple[str, ...] = ()  # records that stay, as sentences
     began: bool = False  # once before, perhaps by an earlier run of the program
+    problem_code: TextCode = NO_CODE
     from_peer: bool = msgspec.field(default=False, name="told")  # the other station has erased it
 
 
@@ -129,13 +144,13 @@ class ErasureQueue:
             problem = self._obstacle(job)
             if not problem:
                 return 0.0 if self._work(job) else _AGAIN_S
-            self._note(job, problem=problem)
+            self._note(job, **_problem(problem))
         return _AGAIN_S if jobs else UNTIL_WOKEN
 
     def _work(self, job: ErasureJob) -> bool:
         """False where it is to be tried again later."""
         progress = _progress_before(job)
-        self._note(job, state=ErasureState.WORKING, problem="", began=True)
+        self._note(job, state=ErasureState.WORKING, began=True, **_problem(""))
         problem = ""
         try:
             _erase(
@@ -147,20 +162,25 @@ class ErasureQueue:
         except _ClosedError:
             return False
         except UserError as error:
-            problem = str(error)
+            problem = text_of_error(error)
             if not job.from_peer:  # else nothing was left to be done
-                self._note(job, state=ErasureState.FAILED, problem=problem)
+                self._note(job, state=ErasureState.FAILED, **_problem(problem))
                 return True
         except (MusterError, OSError) as error:
             if str(error) != self._last_obstacle:
                 _log.warning("forgetting waits, and is tried again: %s", error)
                 self._last_obstacle = str(error)
-            self._note(job, problem=f"it is tried again: {error}", **_counts(progress))
+            again = coded(
+                "erasure-again", "it is tried again: {reason}", reason=text_of_error(error)
+            )
+            self._note(job, **_problem(again), **_counts(progress))
             return False
         self._last_obstacle = ""
         self._on_done(msgspec.structs.replace(job))
-        problem = problem or ". ".join((*progress.damaged, *progress.kept))
-        self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_counts(progress))
+        problem = problem or _left(progress)
+        self._note(
+            job, state=ErasureState.DONE, share=1.0, **_problem(problem), **_counts(progress)
+        )
         return True
 
     def _save_progress(self, job: ErasureJob, share: float, progress: ErasureProgress) -> None:
@@ -197,7 +217,7 @@ def erase_now(
     try:
         done = _erase(service, job, on_progress, progress)
     except UserError as error:
-        jobs.note(job, save=True, state=ErasureState.FAILED, problem=str(error))
+        jobs.note(job, save=True, state=ErasureState.FAILED, **_problem(text_of_error(error)))
         raise
     except KeyboardInterrupt as ended:
         raise UserError(
@@ -207,7 +227,7 @@ def erase_now(
     finally:
         jobs.note(job, save=True, **_counts(progress))
     if service.is_of_pair():  # done again by a station that can order it of the other one
-        jobs.note(job, save=True, state=ErasureState.WAITING, problem="", share=0.0)
+        jobs.note(job, save=True, state=ErasureState.WAITING, share=0.0, **_problem(""))
         return replace(done, kept=(*done.kept, _OTHER_HAS_IT))
     jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
     return done
@@ -217,6 +237,18 @@ def request_again(jobs_file: Path, kind: str, subject_id: str) -> None:
     """Request an erasure whose order is in no log any more, in the file of a station's queue."""
     jobs = JobList(jobs_file, ErasureJob)
     jobs.add(_find_or_create(BY_OTHER_STATION, kind, subject_id, from_peer=False))
+
+
+def _problem(text: str) -> dict[str, Any]:
+    """Fields of a job for a sentence about it; empty: there is none."""
+    return {"problem": str(text), "problem_code": code_of_text(text)}
+
+
+def _left(progress: ErasureProgress) -> str:
+    """Sentence about what stays; the radio's has a code."""
+    if (progress.damaged, progress.kept) == ((), (RADIO_KEPT,)):
+        return RADIO_KEPT
+    return ". ".join((*progress.damaged, *progress.kept))
 
 
 def _problem_of(job: ErasureJob) -> str:
@@ -237,7 +269,7 @@ def _problem_of(job: ErasureJob) -> str:
         kind=kind,
         share_fraction=job.share,
         by=job.by,
-        reason=job.problem,
+        reason=text_with_code(job.problem, job.problem_code),
     )
 
 

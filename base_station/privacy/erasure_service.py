@@ -66,9 +66,10 @@ from shared.messages.station import (
 
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # requests here the erasures done there
-RADIO_KEPT = (
+RADIO_KEPT = coded(
+    "erasure-radio-kept",
     "What was recorded of the radio while another incident was open stays until that is forgotten, "
-    "too: nobody can tell who of them speaks"
+    "too: nobody can tell who of them speaks",
 )
 IMPORTS_KEPT = (
     "Files that were brought in stay as they came, with people and voices in them: take out those "
@@ -288,7 +289,7 @@ class ErasureService:
         for from_ns, until_ns in erasure.times_alone(erased):
             progress.records += self._erase_audio(from_ns, until_ns)
         if any(one.incident_id not in erased for one in erasure.others):
-            progress.kept = (RADIO_KEPT,)
+            progress.kept = (str(RADIO_KEPT),)
 
     def _erase_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""

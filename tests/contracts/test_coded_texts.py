@@ -26,6 +26,7 @@ PARTS = (
     "coded_reasons",
     "drawing_notes",
     "pin_reasons",
+    "transfer_problems",
     *(
         f"refusals_{area}"
         for area in ("access", "people", "incident", "plan", "past", "station", "form")

@@ -54,6 +54,7 @@ FIELDS: Mapping[str, str] = {
     "ReplayChange.playing": "Whether time goes on; null: as before.",
     # ---- recordings
     "fetch_id": "Id of the request for a recording.",
+    "problem_code": "Code of the problem; null: it has none.",
     "problem": "Why it does not go on, a sentence; empty: it does.",
     "Recording.state": "waiting, fetching, done or failed.",
     "RecordingView.state": "waiting, fetching, done or failed.",

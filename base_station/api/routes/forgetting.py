@@ -14,7 +14,8 @@ from base_station.api.refusals import NO_PERSON, ONLY_REPLAYS
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services, Station
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
-from base_station.views.wire import CommandView
+from base_station.views.text_code import text_code_view_or_none
+from base_station.views.wire import CommandView, TextCodeView
 from shared.coded_text import coded
 from shared.errors import UserError
 from shared.messages.station import Unassign
@@ -40,6 +41,7 @@ class Progress(BaseModel):
     share: float  # of the log that was looked through
     records: int  # of the log that changed or went
     files: int  # that were written anew or removed
+    problem_code: TextCodeView | None = None  # of ``problem``, where it has one
 
 
 @router.get("/forgettings")
@@ -170,4 +172,5 @@ def _progress(one: ErasureJob) -> Progress:
         share=one.share,
         records=one.records,
         files=one.files,
+        problem_code=text_code_view_or_none(one.problem_code),
     )

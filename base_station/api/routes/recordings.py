@@ -16,6 +16,8 @@ from base_station.api.services import Services, Station
 from base_station.unit_sync.recordings.transfer import TransferRequest
 from base_station.unit_sync.recordings.transfer_queue import Pull, TransferQueue
 from base_station.views.answer import to_ms
+from base_station.views.text_code import text_code_view_or_none
+from base_station.views.wire import TextCodeView
 from shared.clock import NS_PER_MS
 from shared.coded_text import coded
 
@@ -41,6 +43,7 @@ class Recording(BaseModel):
     problem: str  # a sentence for a person
     done_bytes: int
     total_bytes: int  # 0: not known yet
+    problem_code: TextCodeView | None = None  # of ``problem``, where it has one
 
 
 @router.get("/recordings")
@@ -105,4 +108,5 @@ def _recording(pull: Pull) -> Recording:
         problem=pull.problem,
         done_bytes=pull.done_bytes,
         total_bytes=pull.total_bytes,
+        problem_code=text_code_view_or_none(pull.problem_code),
     )

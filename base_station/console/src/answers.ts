@@ -673,6 +673,7 @@ export interface Progress {
   share: number;
   records: number;
   files: number;
+  problem_code?: TextCodeView | null;
 }
 
 export interface RadioAnswer {
@@ -711,6 +712,7 @@ export interface Recording {
   problem: string;
   done_bytes: number;
   total_bytes: number;
+  problem_code?: TextCodeView | null;
 }
 
 export interface RecordingView {
@@ -720,6 +722,7 @@ export interface RecordingView {
   problem: string;
   done_bytes: number;
   total_bytes: number;
+  problem_code: TextCodeView | null;
 }
 
 export interface Reference {

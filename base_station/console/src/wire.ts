@@ -314,6 +314,7 @@ export interface RecordingView {
   problem: string;
   done_bytes: number;
   total_bytes: number;
+  problem_code: TextCodeView | null;
 }
 
 export interface ForwarderView {

@@ -23,6 +23,7 @@ from base_station.unit_sync.adaptive_chunk_size import AdaptiveChunkSize
 from shared.bus import Bus
 from shared.channels import ROOT
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import Measure, coded, text_of_error
 from shared.folder_lock import FolderLock
 from shared.messages.recording import (
     RecordedFile,
@@ -105,15 +106,18 @@ class Transfer:
         try:
             next(self._steps, None)
         except PermanentTransferError as error:
-            self.state, self.problem = TransferState.FAILED, str(error)
+            self.state, self.problem = TransferState.FAILED, text_of_error(error)
         except TransientTransferError as error:
-            self.state, self.problem = TransferState.WAITING, str(error)
+            self.state, self.problem = TransferState.WAITING, text_of_error(error)
             self._steps = self._run()
         except OSError as error:
             self.state = TransferState.FAILED
-            self.problem = (
-                f"the recording cannot be written to {self.folder} ({error.strerror}): mend or "
-                "free the disk and ask again; what has come is kept"
+            self.problem = coded(
+                "recording-not-written",
+                "the recording cannot be written to {folder} ({error}): mend or free the disk and "
+                "ask again; what has come is kept",
+                folder=str(self.folder),
+                error=error.strerror or str(error),
             )
 
     def close(self) -> None:
@@ -133,14 +137,26 @@ class Transfer:
             before_bytes += file.size_bytes
             self.done_bytes = before_bytes
         self.state = TransferState.DONE
-        self.problem = "; ".join(
-            f"{len(files)} of {len(self._announced)} files {what}"
-            for files, what in (
-                (self._missing, "are gone: the unit needed the room"),
-                (self._unproven, "came whole, but the unit gave them up before telling their hash"),
-            )
-            if files
+        self.problem = self._flaws()
+
+    def _flaws(self) -> str:
+        """Sentence about files that are gone or not proven; empty: there are none."""
+        gone = coded(
+            "recording-files-gone",
+            "{count} of {total} files are gone: the unit needed the room",
+            count=len(self._missing),
+            total=len(self._announced),
         )
+        unproven = coded(
+            "recording-files-unproven",
+            "{count} of {total} files came whole, but the unit gave them up before telling their "
+            "hash",
+            count=len(self._unproven),
+            total=len(self._announced),
+        )
+        if self._missing and self._unproven:
+            return coded("recording-flaws", "{gone}; {unproven}", gone=gone, unproven=unproven)
+        return gone if self._missing else unproven if self._unproven else ""
 
     def _index(self) -> Steps[RecordingIndex]:
         question = f"index?from={self.wanted.from_ns};to={self.wanted.to_ns}"
@@ -149,15 +165,14 @@ class Transfer:
     def _check(self, index: RecordingIndex) -> None:
         unit_id = self.wanted.unit_id
         if not (index.files or self._announced):
-            began = datetime.fromtimestamp(index.first_ns / NS_PER_S, UTC)
-            kept = f"what it keeps begins at {began:%Y-%m-%dT%H:%M:%SZ}"
-            raise PermanentTransferError(
-                f"{unit_id} has no recording of that time: "
-                f"{kept if index.first_ns else 'it keeps none'}; choose another window"
-            )
+            raise PermanentTransferError(_nothing_kept(unit_id, index.first_ns))
         if not all(_is_safe(one.path) for one in index.files):
             raise PermanentTransferError(
-                f"{unit_id} names files that no unit has; is it really {unit_id}?"
+                coded(
+                    "recording-foreign-files",
+                    "{unit} names files that no unit has; is it really {unit}?",
+                    unit=unit_id,
+                )
             )
         self._require_room(
             sum(one.size_bytes - max(map(_size, self._paths(one))) for one in index.files)
@@ -168,9 +183,15 @@ class Transfer:
         free_bytes = shutil.disk_usage(self.folder).free - _SPARED_BYTES
         if needed_bytes > free_bytes:
             raise TransientTransferError(
-                f"the recording needs {needed_bytes / 1e6:.0f} MB and "
-                f"{max(free_bytes, 0) / 1e6:.0f} MB can be spared at {self.folder}: it goes on "
-                "when the disk is freed; or stop it and choose a shorter window"
+                coded(
+                    "recording-disk-full",
+                    "the recording needs {needed_mb:.0f} MB and {spared_mb:.0f} MB can be spared "
+                    "at {folder}: it goes on when the disk is freed; or stop it and choose a "
+                    "shorter window",
+                    needed_mb=needed_bytes / 1e6,
+                    spared_mb=max(free_bytes, 0) / 1e6,
+                    folder=str(self.folder),
+                )
             )
 
     def _file(self, file: RecordedFile, before_bytes: int) -> Steps[None]:
@@ -200,8 +221,14 @@ class Transfer:
                 return
             part.unlink()
         raise PermanentTransferError(
-            f"{file.path} came out different from what {self.wanted.unit_id} has, {_CHANCES} "
-            "times: check the station's and the unit's disk"
+            coded(
+                "recording-file-differs",
+                "{file} came out different from what {unit} has, {times} times: check the "
+                "station's and the unit's disk",
+                file=file.path,
+                unit=self.wanted.unit_id,
+                times=_CHANCES,
+            )
         )
 
     def _paths(self, file: RecordedFile) -> tuple[Path, Path]:
@@ -228,8 +255,13 @@ class Transfer:
                 if piece.offset == offset and len(piece.data) <= length and _is_intact(piece):
                     if not piece.data:
                         raise TransientTransferError(
-                            f"{self.wanted.unit_id} has less of {file.path} than it had; it is "
-                            "asked anew what it has"
+                            coded(
+                                "recording-file-shorter",
+                                "{unit} has less of {file} than it had; it is asked anew what it "
+                                "has",
+                                unit=self.wanted.unit_id,
+                                file=file.path,
+                            )
                         )
                     written.write(piece.data)
                     written.flush()
@@ -258,7 +290,11 @@ class Transfer:
             logger.debug("asking %s failed: %r", self.wanted.unit_id, error)
         self._pace.note_timeout()
         self.state = TransferState.WAITING
-        self.problem = f"{self.wanted.unit_id} does not answer; it goes on when it does"
+        self.problem = coded(
+            "recording-no-answer",
+            "{unit} does not answer; it goes on when it does",
+            unit=self.wanted.unit_id,
+        )
         return None
 
     def _write_hash(self, path: str, digest: str) -> None:
@@ -277,6 +313,24 @@ class Transfer:
 def _size(path: Path) -> int:
     """Size of a file; 0 where there is none."""
     return path.stat().st_size if path.exists() else 0
+
+
+def _nothing_kept(unit_id: str, first_ns: int) -> str:
+    """``first_ns``: start of what the unit keeps, station time; 0: it keeps nothing."""
+    if not first_ns:
+        return coded(
+            "recording-none",
+            "{unit} has no recording of that time: it keeps none; choose another window",
+            unit=unit_id,
+        )
+    began = datetime.fromtimestamp(first_ns / NS_PER_S, UTC)
+    return coded(
+        "recording-none-then",
+        "{unit} has no recording of that time: what it keeps begins at {began_utc_s}; choose "
+        "another window",
+        unit=unit_id,
+        began_utc_s=Measure(first_ns / NS_PER_S, f"{began:%Y-%m-%dT%H:%M:%SZ}"),
+    )
 
 
 def _is_safe(name: str) -> bool:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import secrets
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from base_station.storage.job_queue import JobQueue
 from base_station.unit_sync.recordings.transfer import Ask, Transfer, TransferRequest, TransferState
+from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import RecordingView
 from shared.clock import Clock
-from shared.coded_text import coded
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_of_error
 from shared.errors import MusterError, StoreError, UserError
 from shared.file_faults import making_fault
 from shared.own_files import make_folder
@@ -21,6 +23,8 @@ from shared.worker import UNTIL_WOKEN
 _LIST = "wanted.json"
 _MOST = 20  # under way at once
 _REST_S = 0.5  # when no unit answers
+_STOPPED = coded("recording-stopped", "stopped by a person")
+_DELETED = coded("recording-deleted", "deleted: its wearer is forgotten")
 
 
 class Pull(msgspec.Struct):
@@ -33,6 +37,7 @@ class Pull(msgspec.Struct):
     problem: str = ""
     total_bytes: int = 0
     done_bytes: int = 0
+    problem_code: TextCode = NO_CODE
 
 
 class TransferQueue:
@@ -78,7 +83,7 @@ class TransferQueue:
         for pull in self._pulls.under_way():
             if pull.fetch_id == fetch_id:
                 return self._pulls.note(
-                    pull, save=True, state=TransferState.FAILED, problem="stopped by a person"
+                    pull, save=True, state=TransferState.FAILED, **_problem(_STOPPED)
                 )
         return False
 
@@ -87,7 +92,7 @@ class TransferQueue:
         self._pulls.note_each(
             lambda pull: pull.wanted.unit_id in unit_ids,
             state=TransferState.FAILED,
-            problem="deleted: its wearer is forgotten",
+            **_problem(_DELETED),
         )
         self._pulls.wake()
 
@@ -105,6 +110,7 @@ class TransferQueue:
                 one.problem,
                 one.done_bytes,
                 one.total_bytes,
+                text_code_view_or_none(one.problem_code),
             )
             for one in self.pulls()
         )
@@ -131,14 +137,14 @@ class TransferQueue:
                 fetch = Transfer(self._ask, self._folder, pull.wanted, self._clock)
                 self._running[pull.fetch_id] = fetch
         except MusterError as error:  # another program pulls from this unit
-            self._pulls.note(pull, save=False, problem=str(error))
+            self._pulls.note(pull, save=False, **_problem(text_of_error(error)))
             return False
         fetch.step()
         self._pulls.note(
             pull,
             save=fetch.state.is_over,
             state=fetch.state,
-            problem=fetch.problem,
+            **_problem(fetch.problem),
             total_bytes=fetch.total_bytes,
             done_bytes=fetch.done_bytes,
         )
@@ -147,6 +153,11 @@ class TransferQueue:
     def _close_ended(self, under_way: set[str]) -> None:
         for fetch_id in self._running.keys() - under_way:
             self._running.pop(fetch_id).close()
+
+
+def _problem(text: str) -> dict[str, Any]:
+    """Fields of a pull for a sentence about it; empty: there is none."""
+    return {"problem": str(text), "problem_code": code_of_text(text)}
 
 
 def _new_pull(by: str, wanted: TransferRequest, under_way: list[Pull]) -> Pull:

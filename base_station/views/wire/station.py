@@ -30,6 +30,7 @@ class RecordingView(Answer, frozen=True):
     problem: str  # a sentence for a person
     done_bytes: int
     total_bytes: int  # 0: not known yet
+    problem_code: TextCodeView | None = None  # of ``problem``, where it has one
 
 
 class ForwarderView(Answer, frozen=True):

@@ -13,6 +13,7 @@ const PARTS = [
   "coded_reason",
   "drawing_note",
   "pin_reason",
+  "transfer_problem",
   "refusal_access",
   "refusal_people",
   "refusal_incident",

@@ -4,6 +4,7 @@ import { attempt } from "../sessions";
 import { notice } from "../uiState";
 import * as api from "../api";
 import { t } from "../language/translate";
+import { codedText } from "../live/codedText";
 import { useFirstField, useFocusBack } from "./Confirm";
 import { fields } from "./useLoaded";
 
@@ -79,7 +80,7 @@ function ErasureProgress({ name, one }: { name: string; one: api.Forgetting }) {
     <label class="under-way">
       {t("erase.deleting", { name })}
       <progress value={one.share} max={1} />
-      {one.problem !== "" && <small>{one.problem}</small>}
+      {one.problem !== "" && <small>{problemOf(one)}</small>}
     </label>
   );
 }
@@ -89,7 +90,11 @@ function isOver(one: api.Forgetting): boolean {
 }
 
 function outcome(one: api.Forgetting): string {
-  if (one.state !== "done") return t("erase.nothing_deleted", { problem: one.problem });
+  if (one.state !== "done") return t("erase.nothing_deleted", { problem: problemOf(one) });
   const deleted = t("erase.deleted", { count: one.records });
-  return one.problem === "" ? deleted : t("erase.deleted_but", { deleted, problem: one.problem });
+  return one.problem === "" ? deleted : t("erase.deleted_but", { deleted, problem: problemOf(one) });
+}
+
+function problemOf(one: api.Forgetting): string {
+  return codedText(one.problem_code ?? undefined, one.problem);
 }

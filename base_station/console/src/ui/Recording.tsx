@@ -2,7 +2,8 @@ import { attempt, live, mayAct } from "../sessions";
 import * as api from "../api";
 import type { RecordingView } from "../wire";
 import { bytes } from "../format";
-import { t } from "../language/translate";
+import { codedText } from "../live/codedText";
+import { knownLabel, t } from "../language/translate";
 
 const HOUR_MS = 3_600_000;
 
@@ -54,15 +55,16 @@ export function Recordings({ pulls }: { pulls: readonly RecordingView[] }) {
 
 function UnderWay({ pull }: { pull: RecordingView }) {
   const known = pull.total_bytes > 0;
+  const state = knownLabel("transfer_state", pull.state) ?? pull.state;
   return (
     <span class="under-way">
       <label>
         {known
-          ? t("recording.progress", { state: pull.state, done: bytes(pull.done_bytes), total: bytes(pull.total_bytes) })
-          : pull.state}
+          ? t("recording.progress", { state, done: bytes(pull.done_bytes), total: bytes(pull.total_bytes) })
+          : state}
         <progress {...(known ? { value: pull.done_bytes, max: pull.total_bytes } : {})} />
       </label>
-      {pull.problem !== "" && <small>{pull.problem}</small>}
+      {pull.problem !== "" && <small>{problemOf(pull)}</small>}
       {mayAct.value && (
         <button
           type="button"
@@ -81,5 +83,10 @@ function isOver(pull: RecordingView): boolean {
 }
 
 function outcome(pull: RecordingView): string {
-  return pull.state === "done" ? t("recording.stored", { size: bytes(pull.total_bytes) }) : pull.problem;
+  if (pull.state !== "done") return problemOf(pull);
+  return [t("recording.stored", { size: bytes(pull.total_bytes) }), problemOf(pull)].filter(Boolean).join("; ");
+}
+
+function problemOf(pull: RecordingView): string {
+  return codedText(pull.problem_code ?? undefined, pull.problem);
 }

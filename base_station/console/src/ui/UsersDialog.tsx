@@ -51,7 +51,9 @@ function NewUser({ done }: { done: () => void }) {
         {t("users.role")}
         <select name="role">
           {api.ROLES.map((role) => (
-            <option key={role}>{role}</option>
+            <option key={role} value={role}>
+              {t(`role.${role}`)}
+            </option>
           ))}
         </select>
       </label>
@@ -75,7 +77,9 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
       <td data-label={t("users.role")}>
         <select aria-label={t("users.role_of", { name: username })} {...role}>
           {api.ROLES.map((role) => (
-            <option key={role}>{role}</option>
+            <option key={role} value={role}>
+              {t(`role.${role}`)}
+            </option>
           ))}
         </select>
       </td>

@@ -10,3 +10,4 @@ export * from "./refusals_past";
 export * from "./refusals_people";
 export * from "./refusals_plan";
 export * from "./refusals_station";
+export * from "./transfer_problems";

@@ -87,7 +87,7 @@ export const audit_field: Part<"audit_field"> = {
   name: "nom",
   text: "texte",
   note: "note",
-  crew: "équipe",
+  crew: "binôme",
   role: "rôle",
   label: "libellé",
   person_name: "nom de la personne",

@@ -33,7 +33,7 @@ export const dispatch: Part<"dispatch"> = {
   remarks: "Observations",
   state: "État",
   ended: "terminé par le centre d’appel",
-  crew: "équipe {crew}",
+  crew: "binôme {crew}",
   unit_known: "{unit}\u00a0: {known}",
   unit_unknown: "{unit}\u00a0: inconnu de cette station",
 };

@@ -55,8 +55,8 @@ export const incident: Part<"incident"> = {
   choice: "{incident} ({count, plural, one {# alarme en cours} other {# alarmes en cours}})",
   open_another: "Ouvrir une autre intervention",
   goes_on:
-    "{incident} continue en parallèle\u00a0; pour y mettre fin, clôturez-la d’abord. La nouvelle intervention n’a encore personne ni plan\u00a0: affectez-lui des équipes ici.",
-  whom: "Équipe ou boîtier d’une autre intervention, ou sans intervention",
+    "{incident} continue en parallèle\u00a0; pour y mettre fin, clôturez-la d’abord. La nouvelle intervention n’a encore personne ni plan\u00a0: affectez-lui des binômes ici.",
+  whom: "Binôme ou boîtier d’une autre intervention, ou sans intervention",
   nobody_elsewhere: "personne n’est ailleurs",
   choose: "choisir",
   assign_hint: "Le PAR des personnes affectées est à confirmer ici, et leur parcours recommence.",

@@ -63,7 +63,7 @@ export const member: Part<"member"> = {
   place_unknown: "emplacement inconnu",
   recognised: "reconnu",
   was_inside: "Était à l’intérieur",
-  inside_for: "À l’intérieur depuis",
+  inside_for: "Entré il y a",
   duplicate: "deux boîtiers émettent sous ce nom, l’un est masqué",
   gps_none: "pas encore de position",
   gps_used: "utilisé",

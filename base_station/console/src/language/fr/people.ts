@@ -6,7 +6,7 @@ export const board: Part<"board"> = {
   no_incident: "Aucune intervention en cours",
   summary: "{incident}, {count, number} sur place, {time}",
   not_current: "Pas à jour\u00a0: la station n’est pas connectée.",
-  crew: "Équipe",
+  crew: "Binôme",
   unit: "Boîtier",
   state: "État",
   floor: "Étage",
@@ -75,11 +75,11 @@ export const fact: Part<"fact"> = {
 
 export const list: Part<"list"> = {
   by_need: "Par urgence",
-  by_crew: "Par équipe",
+  by_crew: "Par binôme",
   by_name: "Par nom",
   title: "Liste des personnes",
-  placeholder: "Nom, boîtier ou équipe  ( / )",
-  search: "Chercher par nom, boîtier ou équipe",
+  placeholder: "Nom, boîtier ou binôme  ( / )",
+  search: "Chercher par nom, boîtier ou binôme",
   order: "Ordre de la liste",
   lines: "Une ligne chacun",
   board: "Tableau",

@@ -5,11 +5,11 @@ export const pin_reason: Part<"pin_reason"> = {
   "pin-after": "{pin} de {apart_s} après",
   "pin-against-fixes": "{path} et les positions satellite",
   "pin-against-pin": "{pin} et {path}",
-  "pin-path-behind": "le trajet de l’unité n’est pas encore arrivé à cette heure",
+  "pin-path-behind": "le trajet du boîtier n’est pas encore arrivé à cette heure",
   "pin-beacon-unplaced": "l’emplacement de la balise {beacon} n’est pas défini",
   "pin-before": "{pin} de {apart_s} avant",
   "pin-path-later":
-    "le trajet connu commence {early_s} plus tard\u00a0: le journal de l’unité peut encore apporter ce qui précède, sinon donnez au repère une heure plus tardive",
+    "le trajet connu commence {early_s} plus tard\u00a0: le journal du boîtier peut encore apporter ce qui précède, sinon donnez au repère une heure plus tardive",
   "pin-conflict":
     "à {away_m} de l’endroit où mènent {against}\u00a0: {times, number} fois l’écart attendu\u00a0; conservé, mais pas utilisé",
   "pin-conflict-above":
@@ -24,7 +24,7 @@ export const pin_reason: Part<"pin_reason"> = {
   "pin-named-note": "le repère «\u00a0{note}\u00a0»",
   "pin-named-start": "le repère de départ",
   "pin-named-tag": "l’étiquette {tag}",
-  "pin-no-position": "aucune position de cette unité n’est encore arrivée",
+  "pin-no-position": "aucune position de ce boîtier n’est encore arrivée",
   "pin-no-position-of": "aucune position de {unit} n’est encore arrivée",
   "pin-not-solved": "pas encore calculé",
   "pin-path-of": "le trajet de {unit}",

@@ -7,11 +7,11 @@ export const problem: Part<"problem"> = {
   "archive-away":
     "Les interventions closes ne sont plus archivées depuis {minutes}, {waiting, number} en attente : {reason}",
   "bus-plain":
-    "Le bus est en TCP non chiffré : toute machine qui l’atteint peut se faire passer pour n’importe quelle unité",
+    "Le bus est en TCP non chiffré : toute machine qui l’atteint peut se faire passer pour n’importe quel boîtier",
   "certificate-expired":
-    "Le certificat {holder, select, console {de la console} this_station {de cette station} first_station {de la première station} station {de la station {name}} operator {de l’opérateur {name}} tracker {de l’agent de suivi de {name}} other {de l’unité {name}}} a expiré le {ends_utc_s} : {command}",
+    "Le certificat {holder, select, console {de la console} this_station {de cette station} first_station {de la première station} station {de la station {name}} operator {de l’opérateur {name}} tracker {de l’agent de suivi de {name}} other {du boîtier {name}}} a expiré le {ends_utc_s} : {command}",
   "certificate-expires":
-    "Le certificat {holder, select, console {de la console} this_station {de cette station} first_station {de la première station} station {de la station {name}} operator {de l’opérateur {name}} tracker {de l’agent de suivi de {name}} other {de l’unité {name}}} expire {days, plural, =0 {dans moins d’un jour} one {dans # jour} other {dans # jours}} : {command}",
+    "Le certificat {holder, select, console {de la console} this_station {de cette station} first_station {de la première station} station {de la station {name}} operator {de l’opérateur {name}} tracker {de l’agent de suivi de {name}} other {du boîtier {name}}} expire {days, plural, =0 {dans moins d’un jour} one {dans # jour} other {dans # jours}} : {command}",
   "certificate-renewed":
     "Le certificat de cette station a été renouvelé. La station redémarre avec lui, ce qui prend quelques secondes, à la clôture de l’intervention, ou une heure avant la fin de l’actuel ({ends_utc_s})",
   "checkpoint-refused":
@@ -23,7 +23,7 @@ export const problem: Part<"problem"> = {
   "clock-behind":
     "L’horloge de cette machine retarde de {off_s} sur le dernier enregistrement : la régler. Les heures continuent de là en attendant",
   "connections-refused":
-    "{count, number} connexions au bus ont été refusées dans la dernière minute ({total, number} depuis le démarrage du routeur), dont {of_network, number} de {network}, la plupart pour : {reason, select, silent {pas de salutation à temps} ended {fin avant une salutation} not_tls {pas de TLS, ou pas de certificat de l’autorité de cette station} not_enrolled {un certificat révoqué ou absent de la liste} banned {un titulaire exclu pour un moment} too_often {plus de liaisons d’un titulaire que permis} other {plus de connexions simultanées que permis}}. Les unités sont admises malgré tout ; voir docs/howto/when-attacked.md",
+    "{count, number} connexions au bus ont été refusées dans la dernière minute ({total, number} depuis le démarrage du routeur), dont {of_network, number} de {network}, la plupart pour : {reason, select, silent {pas de salutation à temps} ended {fin avant une salutation} not_tls {pas de TLS, ou pas de certificat de l’autorité de cette station} not_enrolled {un certificat révoqué ou absent de la liste} banned {un titulaire exclu pour un moment} too_often {plus de liaisons d’un titulaire que permis} other {plus de connexions simultanées que permis}}. Les boîtiers sont admis malgré tout ; voir docs/howto/when-attacked.md",
   "console-name-not-certified":
     "Le certificat de la console ne vaut pas pour {name}, et les navigateurs avertissent : en créer un avec « muster pki renew-station --host {name} », et --host pour chaque autre nom et adresse",
   "console-not-announced":
@@ -67,9 +67,9 @@ export const problem: Part<"problem"> = {
   "erasure-waits":
     "Le journal est réécrit pour oublier {kind, select, person {une personne} incident {une intervention} other {{kind}}} ({share_fraction}), à la demande de {by} : {reason}",
   "journal-floods":
-    "Le journal de {unit_id} apporte plus qu’une unité n’envoie en des heures ({most, number} messages, {most_mb} ou {most_alerts, number} alertes) : le reste est repris lentement. Si elle n’a pas été longtemps hors de portée, l’éteindre ou la révoquer : muster pki revoke {unit_id}",
+    "Le journal de {unit_id} apporte plus qu’un boîtier n’envoie en des heures ({most, number} messages, {most_mb} ou {most_alerts, number} alertes) : le reste est repris lentement. S’il n’a pas été longtemps hors de portée, l’éteindre ou le révoquer : muster pki revoke {unit_id}",
   "log-damaged":
-    "Une partie du journal n’est plus lisible ({files}) : vérifier le disque. {remedy, select, other_station {Ce qui manque est récupéré auprès de l’autre station dès qu’elle est joignable} other {Les messages des unités sont repris de leurs journaux ; pour le reste, restaurer le fichier depuis une sauvegarde}}",
+    "Une partie du journal n’est plus lisible ({files}) : vérifier le disque. {remedy, select, other_station {Ce qui manque est récupéré auprès de l’autre station dès qu’elle est joignable} other {Les messages des boîtiers sont repris de leurs journaux ; pour le reste, restaurer le fichier depuis une sauvegarde}}",
   "log-disk-hangs":
     "Impossible d’écrire dans {folder} : le disque ne répond pas ; le vérifier",
   "log-files-gone":
@@ -79,7 +79,7 @@ export const problem: Part<"problem"> = {
   "log-little-room":
     "il ne reste que {free_mb} pour le journal dans {folder} : libérer le disque",
   "log-part-lost":
-    "Une partie du journal est perdue : {lost} : vérifier le disque. {remedy, select, other_station {Ce qui manque est récupéré auprès de l’autre station dès qu’elle est joignable} other {Les messages des unités sont repris de leurs journaux ; pour le reste, restaurer le fichier depuis une sauvegarde}}",
+    "Une partie du journal est perdue : {lost} : vérifier le disque. {remedy, select, other_station {Ce qui manque est récupéré auprès de l’autre station dès qu’elle est joignable} other {Les messages des boîtiers sont repris de leurs journaux ; pour le reste, restaurer le fichier depuis une sauvegarde}}",
   "log-records-lost":
     "le journal ne peut pas être écrit dans {folder} ({error}) : {waiting_mb} attendent en mémoire, {lost, number} enregistrements sont perdus ; libérer ou réparer le disque",
   "log-records-missing":
@@ -87,9 +87,9 @@ export const problem: Part<"problem"> = {
   "log-waits":
     "le journal ne peut pas être écrit dans {folder} ({error}) : {waiting_mb} attendent en mémoire ; libérer ou réparer le disque",
   "messages-left-out":
-    "Les messages arrivent plus vite que cette machine ne peut les prendre ; {count, number} ont été laissés, et sont repris des journaux des unités",
+    "Les messages arrivent plus vite que cette machine ne peut les prendre ; {count, number} ont été laissés, et sont repris des journaux des boîtiers",
   "messages-not-kept":
-    "Messages pour lesquels le journal d’une unité n’avait plus de place depuis son démarrage : {counts}. Ceux que la liaison a aussi perdus manquent : libérer ou remplacer le disque de l’unité",
+    "Messages pour lesquels le journal d’un boîtier n’avait plus de place depuis son démarrage : {counts}. Ceux que la liaison a aussi perdus manquent : libérer ou remplacer le disque du boîtier",
   "messages-unreadable":
     "{count, number} messages n’ont pas pu être lus ; le dernier : {last}",
   "part-ended":
@@ -101,25 +101,25 @@ export const problem: Part<"problem"> = {
   "recorder-stopped":
     "l’enregistreur s’est arrêté et rien n’est journalisé ({error}) : le redémarrer",
   "restart-storm":
-    "Le programme d’une unité démarre anormalement souvent ({key}) : ignoré",
+    "Le programme d’un boîtier démarre anormalement souvent ({key}) : ignoré",
   "router-away":
-    "Le routeur du bus est absent et redémarre ; aucune unité n’est reliée",
+    "Le routeur du bus est absent et redémarre ; aucun boîtier n’est relié",
   "rule-failed":
     "La règle d’alarme « {rule} » a échoué pour {unit_id} et n’a pas jugé : {error}",
   "secret-open":
-    "{path} peut être lu ou modifié par d’autres, et cela ne peut être retiré ({error}) : le donner à l’utilisateur de la station avec le mode 0600 ; {remedy, select, authority_key {elle permet d’enrôler n’importe quelle unité : si des inconnus utilisent cette machine, créer une nouvelle autorité et enrôler de nouveau toutes les unités} station_key {elle permet à une machine de se faire passer pour cette station : si des inconnus utilisent celle-ci, créer une nouvelle autorité et enrôler de nouveau toutes les unités} first_login {donner un autre mot de passe à l’administrateur} database_password {si des inconnus utilisent cette machine, donner un autre mot de passe à l’utilisateur de la base de données} database {si des inconnus utilisent cette machine, donner un autre mot de passe à chaque utilisateur} other {si des inconnus utilisent cette machine, créer une autre clé}}",
+    "{path} peut être lu ou modifié par d’autres, et cela ne peut être retiré ({error}) : le donner à l’utilisateur de la station avec le mode 0600 ; {remedy, select, authority_key {elle permet d’enrôler n’importe quel boîtier : si des inconnus utilisent cette machine, créer une nouvelle autorité et enrôler de nouveau tous les boîtiers} station_key {elle permet à une machine de se faire passer pour cette station : si des inconnus utilisent celle-ci, créer une nouvelle autorité et enrôler de nouveau tous les boîtiers} first_login {donner un autre mot de passe à l’administrateur} database_password {si des inconnus utilisent cette machine, donner un autre mot de passe à l’utilisateur de la base de données} database {si des inconnus utilisent cette machine, donner un autre mot de passe à chaque utilisateur} other {si des inconnus utilisent cette machine, créer une autre clé}}",
   "secret-was-open":
-    "{path} pouvait être lu ou modifié par d’autres (mode {mode}) et leur a été fermé ; {remedy, select, authority_key {elle permet d’enrôler n’importe quelle unité : si des inconnus utilisent cette machine, créer une nouvelle autorité et enrôler de nouveau toutes les unités} station_key {elle permet à une machine de se faire passer pour cette station : si des inconnus utilisent celle-ci, créer une nouvelle autorité et enrôler de nouveau toutes les unités} first_login {donner un autre mot de passe à l’administrateur} database_password {si des inconnus utilisent cette machine, donner un autre mot de passe à l’utilisateur de la base de données} database {si des inconnus utilisent cette machine, donner un autre mot de passe à chaque utilisateur} other {si des inconnus utilisent cette machine, créer une autre clé}}",
+    "{path} pouvait être lu ou modifié par d’autres (mode {mode}) et leur a été fermé ; {remedy, select, authority_key {elle permet d’enrôler n’importe quel boîtier : si des inconnus utilisent cette machine, créer une nouvelle autorité et enrôler de nouveau tous les boîtiers} station_key {elle permet à une machine de se faire passer pour cette station : si des inconnus utilisent celle-ci, créer une nouvelle autorité et enrôler de nouveau tous les boîtiers} first_login {donner un autre mot de passe à l’administrateur} database_password {si des inconnus utilisent cette machine, donner un autre mot de passe à l’utilisateur de la base de données} database {si des inconnus utilisent cette machine, donner un autre mot de passe à chaque utilisateur} other {si des inconnus utilisent cette machine, créer une autre clé}}",
   "sender-floods":
-    "{sender_id} envoie plus qu’aucune unité (plus de {most, number} messages ou {most_mb} par seconde) : l’excès est rejeté. L’éteindre ou la révoquer : muster pki revoke {sender_id}",
+    "{sender_id} envoie plus qu’aucun boîtier (plus de {most, number} messages ou {most_mb} par seconde) : l’excès est rejeté. L’éteindre ou le révoquer : muster pki revoke {sender_id}",
   "sender-forged":
     "Un émetteur sur le bus prétend être la station ({key}) : rejeté",
   "sender-shut-out":
-    "{sender_id} ({reason}) : exclue pour {minutes}, car elle gêne les autres ; son porteur est injoignable entre-temps : demander par radio. Échanger l’unité, ou la révoquer : muster pki revoke {sender_id}",
+    "{sender_id} ({reason}) : exclu pour {minutes}, car il gêne les autres ; son porteur est injoignable entre-temps : demander par radio. Échanger le boîtier, ou le révoquer : muster pki revoke {sender_id}",
   "standby-behind":
     "La station de secours est en retard : ce qui se fait maintenant n’est que sur cette station",
   "standby-cut-off":
-    "Aucun message de {station} ni d’une unité n’arrive : cette station est probablement isolée. Elle prend le relais dès qu’elle reçoit une unité, ou à la main",
+    "Aucun message de {station} ni d’un boîtier n’arrive : cette station est probablement isolée. Elle prend le relais dès qu’elle reçoit un boîtier, ou à la main",
   "standby-disk":
     "Le disque de cette station de secours n’accepte pas le journal : le libérer ou le réparer ; ce qui manque sera alors repris",
   "standby-empty":
@@ -141,9 +141,9 @@ export const problem: Part<"problem"> = {
   "station-not-announced":
     "La station n’est pas annoncée sur son réseau : {error}",
   "station-not-certified":
-    "Les unités ne découvrent pas cette station à {addresses}, car son certificat ne vaut pas pour cela : en créer un avec « muster pki renew-station », et --host pour chaque adresse",
+    "Les boîtiers ne découvrent pas cette station à {addresses}, car son certificat ne vaut pas pour cela : en créer un avec « muster pki renew-station », et --host pour chaque adresse",
   "tak-away":
     "La connexion TAK « {name} » ({url}) est absente depuis {away_s} : {reason}",
   "unregistered-messages":
-    "{count, number} messages de plus d’unités non enregistrées que ce qui est affiché",
+    "{count, number} messages de plus de boîtiers non enregistrés que ce qui est affiché",
 };

@@ -29,7 +29,7 @@ export const refusal_form: Part<"refusal_form"> = {
   "field-empty":
     "est vide\u00a0; remplissez ce champ",
   "field-target":
-    "doivent être une unité, une équipe, un étage ou tous",
+    "doivent être un boîtier, un binôme, un étage ou tous",
   "field-choice":
     "doit être l’un de ceux-ci\u00a0: {allowed}",
   "field-too-short":

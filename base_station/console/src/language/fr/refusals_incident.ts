@@ -23,7 +23,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "beacon-unknown":
     "Cette balise n’existe pas.",
   "check-in-addressee":
-    "Indiquez l’un d’eux\u00a0: un boîtier, une équipe ou un étage qui a des membres, tous",
+    "Indiquez l’un d’eux\u00a0: un boîtier, un binôme ou un étage qui a des membres, tous",
   "check-in-id-taken":
     "Une confirmation a besoin de son propre identifiant, et non {check_in}",
   "check-in-nobody":
@@ -31,7 +31,7 @@ export const refusal_incident: Part<"refusal_incident"> = {
   "command-acknowledged":
     "{by} l’a déjà confirmé",
   "command-addressee":
-    "Indiquez l’un d’eux\u00a0: un boîtier, une équipe ou un étage qui a des membres, tous",
+    "Indiquez l’un d’eux\u00a0: un boîtier, un binôme ou un étage qui a des membres, tous",
   "command-id-taken":
     "Un ordre a besoin de son propre identifiant, et non {command}",
   "command-incident-closed":

@@ -149,7 +149,7 @@ export const refusal_past: Part<"refusal_past"> = {
   "parquet-library-missing":
     "La bibliothèque pyarrow, qui écrit le Parquet, n’est pas installée\u00a0: pip install --require-hashes -r deploy/requirements-parquet.lock",
   "export-selection-unknown":
-    "«\u00a0{name}\u00a0» n’est ni un boîtier, ni une personne, ni une équipe avec une trace dans cette intervention\u00a0; il y a {known, select, none {aucune trace} other {{known}}}",
+    "«\u00a0{name}\u00a0» n’est ni un boîtier, ni une personne, ni un binôme avec une trace dans cette intervention\u00a0; il y a {known, select, none {aucune trace} other {{known}}}",
   "import-another-time":
     "Le fichier va du {first_utc_s} au {last_utc_s}, et l’intervention du {from_utc_s} au {until_utc_s}\u00a0: choisissez une autre intervention\u00a0; ou, si l’horloge était décalée (d’environ {off_h, number} h), indiquez les secondes à ajouter",
   "import-other-shift":

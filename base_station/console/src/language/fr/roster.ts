@@ -57,7 +57,7 @@ export const par: Part<"par"> = {
   overdue_count: "{count, plural, one {# PAR} other {# PAR}} en retard",
   countdown: "PAR {time}",
   until_next: " avant le prochain PAR",
-  unconfirmed_count: "{count, number} pas encore confirmés",
+  unconfirmed_count: "{count, number} à confirmer",
   state: "PAR {state}",
   overdue: "PAR en retard de {time}",
   requested: "PAR demandé, reste {time}",

@@ -1,13 +1,13 @@
 import type { Part } from "../catalogue";
 
 export const crew: Part<"crew"> = {
-  title: "Équipes",
+  title: "Binômes",
   hint:
-    "Glissez une personne vers une autre équipe, ou choisissez des personnes puis {move}. Déposez une image sur une personne pour sa photo.",
+    "Glissez une personne vers un autre binôme, ou choisissez des personnes puis {move}. Déposez une image sur une personne pour sa photo.",
   move_here: "Déplacer ici",
-  new: "Nouvelle équipe",
-  add: "Ajouter l’équipe",
-  none: "Sans équipe",
+  new: "Nouveau binôme",
+  add: "Ajouter le binôme",
+  none: "Sans binôme",
   count: "{crew}\u00a0: {count, number}",
 };
 

@@ -2,7 +2,7 @@
 import type { Part } from "../catalogue";
 
 export const unit_fault: Part<"unit_fault"> = {
-  "accel-stuck": "l’accéléromètre a répété une valeur pendant que l’unité tournait",
+  "accel-stuck": "l’accéléromètre a répété une valeur pendant que le boîtier tournait",
   "attribute-no-number": "{attribute} vaut «\u00a0{text}\u00a0», ce qui n’est pas un nombre",
   "batteries-several": "il y a {count, number} batteries\u00a0; indiquer l’une d’elles\u00a0: {there}",
   "batteries-there": "il y a {there}",
@@ -86,11 +86,11 @@ export const unit_fault: Part<"unit_fault"> = {
   "gpsd-no-receiver": "gpsd n’a pas de récepteur\u00a0; est-il branché, et nommé dans /etc/default/gpsd\u00a0?",
   "gpsd-other-receiver": "gpsd n’a pas de récepteur {device}, mais {present}\u00a0; indiquer l’un d’eux",
   "gpsd-silent": "gpsd ne reçoit rien de son récepteur\u00a0; est-il allumé, et le câble branché\u00a0?",
-  "gyro-stuck": "le gyroscope a répété une valeur pendant que l’unité bougeait",
+  "gyro-stuck": "le gyroscope a répété une valeur pendant que le boîtier bougeait",
   "iio-lost":
     "{lost, number} échantillons sur {known, number} en 10 s ont été perdus\u00a0: cette machine est surchargée, ou le bus trop lent",
   "iio-mag-found":
-    "il a un magnétomètre, et passait pour un capteur sans magnétomètre avant d’être là\u00a0: redémarrer l’agent de l’unité",
+    "il a un magnétomètre, et passait pour un capteur sans magnétomètre avant d’être là\u00a0: redémarrer l’agent du boîtier",
   "iio-mag-not-captured": "son pilote n’acquiert pas son magnétomètre\u00a0: celui-ci n’est pas lu",
   "iio-mag-stuck": "son magnétomètre répète une valeur depuis {stuck_s}\u00a0: il est bloqué",
   "iio-mount-matrix":
@@ -111,7 +111,7 @@ export const unit_fault: Part<"unit_fault"> = {
   "iio-rate":
     "il donne {rate_hz, number} échantillons par seconde et est réglé sur {set_hz, number}\u00a0: son bus ou cette machine est trop lent, ou ?rate= n’est pas à sa portée",
   "iio-rate-changed":
-    "il donne {rate_hz, number} échantillons par seconde et passait pour un capteur à {described_hz, number} avant d’être là\u00a0: redémarrer l’agent de l’unité",
+    "il donne {rate_hz, number} échantillons par seconde et passait pour un capteur à {described_hz, number} avant d’être là\u00a0: redémarrer l’agent du boîtier",
   "iio-rate-not-offered":
     "il ne propose pas {asked_hz, number} échantillons par seconde mais {offered}\u00a0; il en donne {rate_hz, number}\u00a0: l’écrire par ?rate=, ou une autre valeur proposée",
   "iio-silent": "{device} n’en a donné aucun depuis {silent_s}\u00a0: {reason}",
@@ -123,7 +123,7 @@ export const unit_fault: Part<"unit_fault"> = {
   "journal-damaged": "le journal est endommagé ({damage})\u00a0; il est laissé tel quel, et un nouveau est commencé",
   "journal-hangs": "le journal est bloqué\u00a0: le disque ne répond pas depuis {silent_s}",
   "journal-of-other-unit":
-    "le dossier contenait le journal d’une autre unité, comme copié\u00a0; il est mis de côté sous {file}",
+    "le dossier contenait le journal d’un autre boîtier, comme copié\u00a0; il est mis de côté sous {file}",
   "journal-set-aside": "le journal était endommagé et est mis de côté sous {file}",
   "journal-unusable": "le journal {path} est inutilisable\u00a0: {error}",
   "line-busy": "un autre programme le lit\u00a0; terminer celui-ci",
@@ -163,7 +163,7 @@ export const unit_fault: Part<"unit_fault"> = {
     "il indique {shown}, ce qui n’est pas entre {least_degc} et {most_degc}\u00a0: le capteur est ouvert, en court-circuit ou mal réglé",
   "temperature-no-input": "{device} n’a pas d’entrée {name}\u00a0; {listed}",
   "temperature-of-machine":
-    "{name} mesure la machine elle-même, pas l’air autour\u00a0; écrire role=electronics pour l’avoir comme température de l’unité",
+    "{name} mesure la machine elle-même, pas l’air autour\u00a0; écrire role=electronics pour l’avoir comme température du boîtier",
   "temperature-unknown": "{device} n’a pas de température {name}\u00a0; {listed}",
   "temperatures-several": "{device} a {count, number} températures\u00a0; {listed}",
   "thermocouple-fault": "circuit ouvert ou court-circuit\u00a0: le convertisseur signale un défaut de son thermocouple",
@@ -174,7 +174,7 @@ export const unit_fault: Part<"unit_fault"> = {
   "tracker-made-for":
     "le tracker {tracker} est fait pour {places}, et le capteur est porté sur {place}\u00a0: régler tracker sur {auto}",
   "tracker-needs":
-    "le tracker {tracker} a besoin d’un capteur à chaque endroit ({needed}), et cette unité a {has}\u00a0: {instead} est utilisé à la place",
+    "le tracker {tracker} a besoin d’un capteur à chaque endroit ({needed}), et ce boîtier a {has}\u00a0: {instead} est utilisé à la place",
   "tracker-no-compass":
     "le tracker {tracker} garde son cap à la boussole, et le capteur n’a pas de magnétomètre\u00a0: le cap dérive",
   "tracker-unused": "le tracker {tracker} utilise {used}\u00a0; {unused} est seulement enregistré",
