@@ -21,7 +21,7 @@ from base_station.department_wire import (
 from base_station.security.pki.folder import PkiFolder
 from shared.enrolment import Holder
 from tests.e2e.console_page import barriers
-from tests.e2e.test_languages import english_on
+from tests.e2e.language_checks import english_on
 from tests.rig.department_process import DepartmentProcess
 from tests.rig.department_reporter import DepartmentReporter
 from tests.rig.loaded_program import launch_loaded
