@@ -185,4 +185,5 @@ def evidence_of_one(
         grid,
         history.latest.height_assumed,
         history.path_noise,
+        history.noise_runs,
     )

@@ -1,7 +1,7 @@
 """Map-matching particle filter: places on a plan whose walls people do not cross.
 
-A particle is a place, a heading correction and a drift rate; the path moves all, and one that
-crosses a wall of the plan loses weight (Woodman and Harle 2008). The stages of a step: predict
+A particle is a place, a heading correction, a drift rate and a scale; the path moves all, and one
+that crosses a wall of the plan loses weight (Woodman and Harle 2008). The stages of a step: predict
 (``Particles.predict``), weight (``particle_likelihood``), resample (``Particles.reweight``) and
 estimate (``Particles.moments``); ``reseeding`` searches elsewhere where walls contradict the path.
 """
@@ -169,7 +169,7 @@ class MapParticleFilter:
     def set_map(self, grid: FloorGrid) -> None:
         """Use other walls than before: the recent path is weighted by them."""
         particles = self._particles
-        met = self._window.wall_log_likelihood(particles.states, particles.scale, grid, -math.inf)
+        met = self._window.wall_log_likelihood(particles.states, grid, -math.inf)
         self._window.set_log_likelihood(float(np.logaddexp.reduce(particles.log_shares + met)))
         self._to_relocalise_m = 0.0
 
@@ -180,14 +180,14 @@ class MapParticleFilter:
         """
         self._to_relocalise_m = RELOCALISE_EVERY_M
         particles, window = self._particles, self._window
-        states, scale, weights = particles.states, particles.scale, particles.weights
+        states, weights = particles.states, particles.weights
         inside = bool(grid.is_in_building((weights @ states[:, :2])[None])[0])
-        found = reseed(known, window, scale, grid, particles.rng, inside=inside)
+        found = reseed(known, window, grid, particles.rng, inside=inside)
         fits = log_density_ratio(known, states[:, :2], grid) - window.log_free_fraction(
-            states, scale, grid
+            states, grid
         )
         log_likelihood = window.log_likelihood - float(
-            weights @ window.repeated_wall_log_ratio(states, scale, grid)
+            weights @ window.repeated_wall_log_ratio(states, grid)
         )
         log_likelihood += float(np.logaddexp.reduce(particles.log_shares + fits))
         if found is not None and (log_odds := found.log_odds(log_likelihood)) > MIN_LOG_ODDS:

@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from base_station.fusion.horizontal.sampling import SCALE
 from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 
@@ -66,32 +67,31 @@ class MotionWindow:
             for move in self._moves
         ]
 
-    def wall_log_likelihood(
-        self, particles: Floats, scale: float, grid: FloorGrid, least: float
-    ) -> Floats:
-        """Log likelihood (n,) of the walls met on the way to particles (n, 4) of north, east, turn
-        and drift; what is once below ``least`` is not followed further back.
+    def wall_log_likelihood(self, particles: Floats, grid: FloorGrid, least: float) -> Floats:
+        """Log likelihood (n,) of the walls met on the way to particles (n, 5) of north, east, turn,
+        drift and scale; what is once below ``least`` is not followed further back.
         """
-        return self._trace_back(particles, scale, grid, (math.inf, least, REPEATED_WALL))[:, 0]
+        return self._trace_back(particles, grid, (math.inf, least, REPEATED_WALL))[:, 0]
 
-    def repeated_wall_log_ratio(self, particles: Floats, scale: float, grid: FloorGrid) -> Floats:
+    def repeated_wall_log_ratio(self, particles: Floats, grid: FloorGrid) -> Floats:
         """Difference (n,) of log likelihood if a repeated crossing counted as a new wall."""
-        all_met = self._trace_back(particles, scale, grid, (math.inf, -math.inf, ANY_WALL))[:, 0]
-        return all_met - self.wall_log_likelihood(particles, scale, grid, -math.inf)
+        all_met = self._trace_back(particles, grid, (math.inf, -math.inf, ANY_WALL))[:, 0]
+        return all_met - self.wall_log_likelihood(particles, grid, -math.inf)
 
-    def log_free_fraction(self, particles: Floats, scale: float, grid: FloorGrid) -> Floats:
+    def log_free_fraction(self, particles: Floats, grid: FloorGrid) -> Floats:
         """Logarithm (n,) of the part of possible ways that would have crossed no wall."""
-        return self._trace_back(particles, scale, grid, (LEG_M, -math.inf, REPEATED_WALL))[:, 1]
+        return self._trace_back(particles, grid, (LEG_M, -math.inf, REPEATED_WALL))[:, 1]
 
     def _trace_back(
-        self, particles: Floats, scale: float, grid: FloorGrid, how: tuple[float, float, float]
+        self, particles: Floats, grid: FloorGrid, how: tuple[float, float, float]
     ) -> Floats:
         segment_m, least, again = how
-        turn, logs = particles[:, 2], np.zeros((len(particles), 2))
-        heads = np.column_stack((particles[:, :2], np.cos(turn), np.sin(turn), particles[:, 3]))
+        turn, scale, logs = particles[:, 2], particles[:, SCALE], np.zeros((len(particles), 2))
+        heads = np.column_stack(
+            (particles[:, :2], scale * np.cos(turn), scale * np.sin(turn), particles[:, 3])
+        )
         for floor, moves in _by_floor(self._moves):
             path = np.array([(m.north_m, m.east_m, m.moving_s, m.climbs) for m in moves])
-            path[:, :2] *= scale
             grid.trace_back(floor, heads, path, (*COSTS, again), (segment_m, REACH_M), least, logs)
         return logs
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from base_station.fusion.horizontal.heading_hypotheses import GnssObservation, slow_error_jacobian
 from base_station.fusion.horizontal.particles import Particles
 from base_station.fusion.horizontal.resampling import JITTER_M, mahalanobis2
+from base_station.fusion.horizontal.sampling import SCALE
 from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, WALL
@@ -76,18 +77,20 @@ def posterior_log_ratio(
     the one of the particles' own moments; ``ahead_m`` as for ``innovations``.
     """
     c, s = float(mean[2]), float(mean[3])
-    to_own = np.zeros((4, 5))
+    scale = math.hypot(c, s)
+    to_own = np.zeros((5, 5))
     to_own[[0, 1, 3], [0, 1, 4]] = 1.0
-    to_own[2, 2:4] = np.array([-s, c]) / (c * c + s * s)
+    to_own[2, 2:4] = np.array([-s, c]) / scale**2
+    to_own[SCALE, 2:4] = np.array([c, s]) / scale
     here = particles.states.copy()
     here[:, :2] += particles.turned(float(ahead_m[0]), float(ahead_m[1]))
     weights = particles.weights
     turn_rad = math.atan2(float(weights @ np.sin(here[:, 2])), float(weights @ np.cos(here[:, 2])))
     here[:, 2] = turn_rad + (here[:, 2] - turn_rad + math.pi) % math.tau - math.pi
     own = here - weights @ here
-    known = np.array([mean[0], mean[1], math.atan2(s, c), mean[4]])
+    known = np.array([mean[0], mean[1], math.atan2(s, c), mean[4], scale])
     known[2] = turn_rad + (known[2] - turn_rad + math.pi) % math.tau - math.pi
-    floor = np.diag([JITTER_M**2, JITTER_M**2, 1e-6, 1e-12])
+    floor = np.diag([JITTER_M**2, JITTER_M**2, 1e-6, 1e-12, 1e-6])
     own_spread = (own * weights[:, None]).T @ own + floor
     spread = to_own @ covariance @ to_own.T + floor
     return np.asarray(0.5 * (mahalanobis2(own, own_spread) - mahalanobis2(here - known, spread)))

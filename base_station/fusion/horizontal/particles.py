@@ -1,4 +1,5 @@
-"""Particles of a place, heading correction and drift rate: prediction, resampling and moments.
+"""Particles of a place, heading correction, drift rate and scale: prediction, resampling and
+moments.
 
 Given a particle's path, the slow error of fixes is a linear problem with one covariance for all
 particles, as in ``heading_hypotheses`` (a Rao-Blackwellised filter).  Random numbers come from a
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from base_station.fusion.horizontal.resampling import jittered, normalised, resampled
 from base_station.fusion.horizontal.reseeding import Reseeding
-from base_station.fusion.horizontal.sampling import draw
+from base_station.fusion.horizontal.sampling import SCALE, draw
 from base_station.fusion.horizontal.state import SLOW
 from base_station.fusion.kernels import DRIFT, STATES
 
@@ -41,35 +42,37 @@ class Particles:
     def __init__(self, mean: Floats, covariance: Floats, seed: int) -> None:
         """Draw them from the moments (9,), (9, 9) of ``HorizontalFilter``."""
         self.rng = np.random.Generator(np.random.PCG64(seed))
-        self.scale = float(np.hypot(mean[2], mean[3]))
-        along = mean[2:4] / self.scale
-        self._scale_var = float(along @ covariance[2:4, 2:4] @ along)  # walls do not change it
         drawn = draw(mean, covariance, self.rng, np.ones(PARTICLES))
-        self.states, self.slow, self.slow_covariance = drawn  # (n, 4), (n, 4), (4, 4)
+        self.states, self.slow, self.slow_covariance = drawn  # (n, 5), (n, 4), (4, 4)
         self.log_weights = np.zeros(PARTICLES)
         self._moments: tuple[Floats, Floats] | None = None
 
     def save(self) -> SavedParticles:
         random = self.rng.bit_generator.state
         inner = random["state"]
+        scale = self.states[:, SCALE]
+        mean = float(self.weights @ scale)
         return SavedParticles(
             self.states.tobytes(),
             self.log_weights.tobytes(),
             self.slow.tobytes(),
             self.slow_covariance.tolist(),
-            self.scale,
-            self._scale_var,
+            mean,
+            float(self.weights @ (scale - mean) ** 2),
             (str(inner["state"]), str(inner["inc"]), random["has_uint32"], random["uinteger"]),
         )
 
     @staticmethod
     def restore(saved: SavedParticles) -> Particles:
         particles = Particles(np.eye(STATES)[2], np.eye(STATES), 0)
-        particles.states = np.frombuffer(saved.states).reshape(PARTICLES, 4).copy()
+        states = np.frombuffer(saved.states).reshape(PARTICLES, -1)
+        if states.shape[1] == SCALE:  # saved when all had one scale
+            drawn = particles.rng.normal(saved.scale, math.sqrt(saved.scale_var), PARTICLES)
+            states = np.column_stack((states, drawn))
+        particles.states = states.copy()
         particles.log_weights = np.frombuffer(saved.log_weights).copy()
         particles.slow = np.frombuffer(saved.slow).reshape(PARTICLES, 4).copy()
         particles.slow_covariance = np.array(saved.slow_covariance)
-        particles.scale, particles._scale_var = saved.scale, saved.scale_var
         state, inc, has_uint32, uinteger = saved.random
         particles.rng.bit_generator.state = {
             "bit_generator": "PCG64",
@@ -91,11 +94,15 @@ class Particles:
 
     def turned(self, north_m: float, east_m: float) -> Floats:
         """An own-frame vector in the incident frame, by every particle (n, 2)."""
-        cosine = self.scale * np.cos(self.states[:, 2])
-        sine = self.scale * np.sin(self.states[:, 2])
+        cosine, sine = self.turn_and_scale().T
         return np.stack(
             [cosine * north_m - sine * east_m, sine * north_m + cosine * east_m], axis=1
         )
+
+    def turn_and_scale(self) -> Floats:
+        """Cosine and sine of the turn times the scale (n, 2)."""
+        turn_rad, scale = self.states[:, 2], self.states[:, SCALE]
+        return np.column_stack((scale * np.cos(turn_rad), scale * np.sin(turn_rad)))
 
     def predict(
         self, north_m: float, east_m: float, moving_s: float, noise: tuple[float, float]
@@ -172,15 +179,12 @@ class Particles:
             weights, particles = self.weights, self.states
             states = np.empty((PARTICLES, STATES))
             states[:, :2] = particles[:, :2]
-            states[:, 2], states[:, 3] = np.cos(particles[:, 2]), np.sin(particles[:, 2])
-            states[:, 2:4] *= self.scale
+            states[:, 2:4] = self.turn_and_scale()
             states[:, SLOW], states[:, DRIFT] = self.slow, particles[:, 3]
             mean = weights @ states
             apart = states - mean
             covariance = (apart * weights[:, None]).T @ apart
             covariance[SLOW, SLOW] += self.slow_covariance
             covariance[[0, 1], [0, 1]] += FLOOR_VAR_M2
-            along = mean[2:4] / np.linalg.norm(mean[2:4])
-            covariance[2:4, 2:4] += self._scale_var * np.outer(along, along)
             self._moments = mean, covariance
         return self._moments

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-KEPT = 0.97  # how much of themselves particles keep when drawn anew (Liu and West 2001)
+KEPT = 0.99  # how much of themselves particles keep when drawn anew (Liu and West 2001)
 JITTER_M = 0.05  # and how far their places are shaken
 
 
@@ -26,11 +26,11 @@ def resampled(weights: Floats, count: int, rng: np.random.Generator) -> NDArray[
 
 
 def jittered(particles: Floats, rng: np.random.Generator) -> Floats:
-    """Particles (n, 4) of north, east, turn and drift, so that those drawn twice are two."""
+    """Particles (n, 5) of north, east, turn, drift and scale, so that those drawn twice are two."""
     particles, inner = particles.copy(), particles[:, 2:]
     middle = inner[0] + wrapped(inner - inner[0]).mean(axis=0)
     off = wrapped(inner - middle)
-    fresh = rng.normal(size=(len(particles), 4))
+    fresh = rng.normal(size=particles.shape)
     spread = math.sqrt(1.0 - KEPT**2) * off.std(axis=0)
     particles[:, 2:] = middle + KEPT * off + spread * fresh[:, 2:]
     particles[:, :2] += JITTER_M * fresh[:, :2]
@@ -42,6 +42,6 @@ def mahalanobis2(apart: Floats, spread: Floats) -> Floats:
     return np.asarray(((apart @ np.linalg.inv(spread)) * apart).sum(axis=1))
 
 
-def wrapped(turn_and_drift: Floats) -> Floats:
-    turn_and_drift[:, 0] = (turn_and_drift[:, 0] + math.pi) % (2.0 * math.pi) - math.pi
-    return turn_and_drift
+def wrapped(inner: Floats) -> Floats:
+    inner[:, 0] = (inner[:, 0] + math.pi) % (2.0 * math.pi) - math.pi
+    return inner

@@ -30,7 +30,9 @@ SAMPLES = 2000
 WIDENING = 2.0  # times the stated error for half of them: a unit elsewhere has a larger error
 LOG_CUTOFF = 6.0  # of log likelihood less than the cloud: not followed further back
 PRIOR_ELSEWHERE = 0.02  # of clouds, before anything speaks for it: about one person in a hundred
-JITTER = np.array([0.1, 0.1, 0.01, 5e-5])  # place, turn and drift of resampled particles
+JITTER = np.array(
+    [0.1, 0.1, 0.01, 5e-5, 0.002]
+)  # place, turn, drift and scale of resampled particles
 
 
 class Reseeding(NamedTuple):
@@ -44,16 +46,15 @@ class Reseeding(NamedTuple):
         return math.log(PRIOR_ELSEWHERE) + self.log_likelihood - log_likelihood
 
     def draw(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Particles (count, 4) and their slow errors (count, 4), drawn by weight."""
+        """Particles (count, 5) and their slow errors (count, 4), drawn by weight."""
         one = resampled(self.weights, count, rng)
-        shaken = self.drawn.particles[one] + JITTER * rng.normal(size=(count, 4))
+        shaken = self.drawn.particles[one] + JITTER * rng.normal(size=(count, len(JITTER)))
         return shaken, self.drawn.slow[one]
 
 
 def reseed(
     known: tuple[Floats, Floats],
     window: MotionWindow,
-    scale: float,
     grid: FloorGrid,
     rng: np.random.Generator,
     *,
@@ -68,14 +69,14 @@ def reseed(
         np.where(np.arange(SAMPLES) % 2, 1.0, WIDENING),
     )
     drawn = draw(*known, rng, widths)
-    logs = window.wall_log_likelihood(drawn.particles, scale, grid, least)
+    logs = window.wall_log_likelihood(drawn.particles, grid, least)
     left = logs >= least
     if inside:
         left &= grid.is_in_building(drawn.particles[:, :2])
     if not left.any():
         return None
     drawn = drawn._replace(particles=drawn.particles[left], slow=drawn.slow[left])
-    met, room = logs[left], window.log_free_fraction(drawn.particles, scale, grid)
+    met, room = logs[left], window.log_free_fraction(drawn.particles, grid)
     total = float(np.logaddexp.reduce(met - room))
     weights = np.exp(met - room - total)
     return Reseeding(drawn, weights, total - math.log(SAMPLES), float(weights @ met))

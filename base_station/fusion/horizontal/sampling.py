@@ -1,4 +1,4 @@
-"""Particles of place, heading correction and drift rate, drawn from what a filter has come to."""
+"""Particles of place, heading correction, drift rate and scale, drawn from a filter's moments."""
 
 from __future__ import annotations
 
@@ -13,8 +13,12 @@ from base_station.fusion.kernels import STATES
 Floats = NDArray[np.float64]
 
 
+SCALE = 4  # column of a particle
+LEAST_SCALE = 0.2  # a smaller one, or a negative one, has no meaning
+
+
 class Drawn(NamedTuple):
-    particles: Floats  # (n, 4): north, east, turn and drift
+    particles: Floats  # (n, 5): north, east, turn, drift and scale
     slow: Floats  # (n, 4): the fixes' slow errors, given a particle
     slow_covariance: Floats  # (4, 4), of each
 
@@ -29,8 +33,10 @@ def draw(mean: Floats, covariance: Floats, rng: np.random.Generator, widths: Flo
     drawn = widths[:, None] * (rng.normal(size=(len(widths), 5)) @ root.T)
     gain = np.linalg.solve(spread, covariance[np.ix_(own, slow)]).T
     state = mean[own] + drawn
+    turn_rad = np.arctan2(state[:, 3], state[:, 2])
+    scale = np.hypot(state[:, 2], state[:, 3])
     return Drawn(
-        np.column_stack([state[:, :2], np.arctan2(state[:, 3], state[:, 2]), state[:, 4]]),
+        np.column_stack((state[:, :2], turn_rad, state[:, 4], np.maximum(scale, LEAST_SCALE))),
         mean[slow] + drawn @ gain.T,
         covariance[np.ix_(slow, slow)] - gain @ covariance[np.ix_(own, slow)],
     )

@@ -12,6 +12,7 @@ import numpy as np
 from base_station.fusion.interface import Estimate, PlaceFix, Start
 from base_station.fusion.odometry.fixes import PathFixes
 from base_station.fusion.odometry.late_points import insert_late
+from base_station.fusion.odometry.noise_runs import NoiseRun, cut_runs, end_run
 from base_station.fusion.odometry.packed_rows import Records
 from base_station.fusion.odometry.path_runs import FrameStart, PathRuns
 from base_station.fusion.odometry.points import BREAK, DOUBTFUL, RESTART, PathArrays, arrays_of
@@ -42,6 +43,7 @@ class PathHistory(msgspec.Struct):
     fixes: PathFixes = msgspec.field(default_factory=PathFixes)
     start: FrameStart = msgspec.field(default_factory=FrameStart)
     path_noise: PathNoise | None = None  # as the unit's tracker states it last
+    noise_runs: list[NoiseRun] = msgspec.field(default_factory=list)  # before, as it stated then
     latest: LatestEstimate = msgspec.field(default_factory=LatestEstimate)
     moved: RigidTransform2D = RigidTransform2D()  # the frame, since anything was packed
     awaited_ns: int | None = None  # a pin waits for the path to come to this time
@@ -84,7 +86,7 @@ class PathHistory(msgspec.Struct):
         """
         own, boot_id = self.own, position.header.boot_id
         t_ns = own.apart_ns(t_ns)
-        self.path_noise = position.path_noise
+        self._set_path_noise(position.path_noise)
         restarted = False
         if boot_id != self.runs.boot_id:
             restarted = self._begin_run(boot_id, t_ns)
@@ -165,6 +167,12 @@ class PathHistory(msgspec.Struct):
         rows = self.own.rows(self.moved)
         return arrays_of(rows, _fixes_on_path(rows, self.fixes.rows(self.moved)))
 
+    def _set_path_noise(self, noise: PathNoise | None) -> None:
+        """The unit states this noise of its path from now on."""
+        if noise != self.path_noise and self.end_ns is not None:
+            end_run(self.noise_runs, self.end_ns, self.path_noise)
+        self.path_noise = noise
+
     def _begin_run(self, boot_id: int, t_ns: int) -> bool:
         """The unit's program was started; in an incident, runs that were over before go. True where
         the path goes on from a run before.
@@ -184,6 +192,7 @@ class PathHistory(msgspec.Struct):
         stays whole.
         """
         before_ms = before_ns // NS_PER_MS
+        self.noise_runs = cut_runs(self.noise_runs, before_ms * NS_PER_MS)
         self.own.cut(before_ms)
         self.fixes.trim(before_ms)
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.interface import Start
+from base_station.fusion.odometry.noise_runs import run_of
 from base_station.fusion.odometry.points import BREAK, DOUBTFUL, RESTART, PathArrays
 from base_station.fusion.smoothing.interface import UnitEvidence
 from base_station.fusion.stated_noise import with_path_noise
@@ -55,23 +56,24 @@ class Chain:
     turn_var: Floats  # (k - 1,)
     moving_s: Floats  # (k - 1,)
     restarts: NDArray[np.bool_]  # (k,) a new own frame begins at this knot
-    scale_std: float  # of each own frame
+    scale_std: Floats  # (k,) of the run of the path that leads to the knot
 
     @staticmethod
     def of(evidence: UnitEvidence, noise: WalkNoise, knot_m: float, knot_s: float) -> Chain:
-        path, noise = evidence.path, with_path_noise(noise, evidence.path_noise)
+        path = evidence.path
+        scale_std, walk, turn = _noise_by_row(evidence, noise)
         knots = _choose_knots(path, knot_m, knot_s)
         steps = np.diff(path.own_m, axis=0)
         joins = (path.flags[1:] & (BREAK | RESTART)) == 0
         steps[~joins] = 0.0
         lengths = np.hypot(steps[:, 0], steps[:, 1])
         duration_s = np.diff(path.t_ns) * NS_TO_S
-        place_var = noise.walk_m_per_sqrt_m**2 * lengths + 1e-4
+        place_var = walk[1:] ** 2 * lengths + 1e-4
         doubtful = (path.flags[1:] & DOUBTFUL) != 0
         place_var += np.where(doubtful & joins, np.maximum(np.diff(path.std_m**2), 0.0), 0.0)
         gone_m2 = noise.restart_m**2 + (noise.unguided_mps * duration_s) ** 2
         place_var += np.where(joins, 0.0, gone_m2)
-        turn_var = noise.turn_rad_per_sqrt_m**2 * lengths + 1e-10
+        turn_var = turn[1:] ** 2 * lengths + 1e-10
         turn_var[1:] += (noise.turn_part * _turned(steps, lengths)) ** 2
         begins = knots[:-1]
         restarts = (path.flags[knots] & RESTART) != 0
@@ -87,7 +89,7 @@ class Chain:
             turn_var=_sums(turn_var, begins),
             moving_s=_sums(path.moving_s[1:], begins),
             restarts=restarts,
-            scale_std=noise.scale_std,
+            scale_std=scale_std[knots],
         )
 
     def __len__(self) -> int:
@@ -146,6 +148,17 @@ def _choose_knots(path: PathArrays, knot_m: float, knot_s: float) -> Ints:
             knots.append(row)
             last = row
     return np.array(knots, dtype=np.int64)
+
+
+def _noise_by_row(evidence: UnitEvidence, usual: WalkNoise) -> tuple[Floats, Floats, Floats]:
+    """Scale, place and turn noise (n,) of the run of the path in which each point lies."""
+    runs = [*(run.noise for run in evidence.noise_runs), evidence.path_noise]
+    stated = [with_path_noise(usual, noise) for noise in runs]
+    by_run = np.array(
+        [(one.scale_std, one.walk_m_per_sqrt_m, one.turn_rad_per_sqrt_m) for one in stated]
+    )
+    scale_std, walk, turn = by_run[run_of(evidence.noise_runs, evidence.path.t_ns)].T
+    return scale_std, walk, turn
 
 
 def _turned(steps: Floats, lengths: Floats) -> Floats:

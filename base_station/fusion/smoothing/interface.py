@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.interface import Posterior, Start
+from base_station.fusion.odometry.noise_runs import NoiseRun
 from base_station.fusion.odometry.points import PathArrays
 from base_station.site.floor_grid import FloorGrid
 from shared.path_noise import PathNoise
@@ -65,7 +66,8 @@ class UnitEvidence:
     places: Sequence[PositionConstraint] = ()  # in the order in which they came to be known
     grid: FloorGrid | None = None  # walls of the plan
     height_assumed: bool = False  # no evidence how high the own frame begins
-    path_noise: PathNoise | None = None  # as the unit's tracker states it
+    path_noise: PathNoise | None = None  # as the unit's tracker states it, after ...
+    noise_runs: Sequence[NoiseRun] = ()  # ... these runs, by time
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def add_position_constraints(
         if place.heading_rad is not None:
             own_rad = chain.path.heading_rad[chain.knots[row]]
             _add_turn(equations, base + STATES * row, place.heading_rad - own_rad,
-                      place.heading_std_rad, chain.scale_std)  # fmt: skip
+                      place.heading_std_rad, float(chain.scale_std[row]))  # fmt: skip
 
 
 def add_places(
@@ -105,18 +105,18 @@ def _add_priors(
         off, own_var_m2 = common.start(start)
         add_places(equations, column, -own, place, np.array([np.sqrt(own_var_m2)]), (off, 1.0))
     for segment in chain.segments():
-        first = base + STATES * segment.start
+        first, scale_std = base + STATES * segment.start, float(chain.scale_std[segment.start])
         if estimate.aligned[segment.start]:
             along = _unit(estimate.x[segment.start : segment.start + 1, 2:4])[0]
             equations.add(
-                chain.scale_std, 1.0,
+                scale_std, 1.0,
                 (np.array([first + 2]), along[0]), (np.array([first + 3]), along[1]),
             )  # fmt: skip
         else:
             _add_turn(equations, first, 0.0, np.sqrt(0.5))
         has_heading = start is not None and start.heading_std_rad < np.pi
         if start is not None and has_heading and segment.start == chain.start_knot:
-            turn = start.heading_rad, start.heading_std_rad, chain.scale_std
+            turn = start.heading_rad, start.heading_std_rad, scale_std
             _add_turn(equations, first, *turn, is_scaled=bool(estimate.aligned[segment.start]))
     equations.add(n.drift_radps, 0.0, (np.array([base + 4]), 1.0))
 
@@ -166,18 +166,33 @@ def _add_turning(
     along = np.where(aligned[:, None], _unit(after), (1.0, 0.0))
     open_var = n.drift_radps**2 * n.open_drift_s * moving_s
     across_std = np.sqrt(chain.turn_var + np.where(aligned, 0.0, open_var) + 1e3 * restarts)
-    along_std = np.where(aligned & ~restarts, 1e-4, across_std)
+    kept, scale_var = _scale_change(chain.scale_std)
+    goes_on = aligned & ~restarts
+    kept = np.where(goes_on, kept, 1.0)
+    along_std = np.hypot(np.where(goes_on, 1e-4, across_std), np.sqrt(scale_var))
     size = np.where(aligned, np.linalg.norm(after, axis=1), 0.0)
-    for (u, v), std, rate in (
-        ((along[:, 0], along[:, 1]), along_std, 0.0),
-        ((-along[:, 1], along[:, 0]), across_std, -size * moving_s),
+    for (u, v), std, rate, share in (
+        ((along[:, 0], along[:, 1]), along_std, 0.0, kept),
+        ((-along[:, 1], along[:, 0]), across_std, -size * moving_s, np.ones(len(kept))),
     ):
         equations.add(
-            std, rate * drift,
+            std, rate * drift + (1.0 - share),
             (there + 2, u), (there + 3, v),
-            (here + 2, -(u * cosine + v * sine)), (here + 3, u * sine - v * cosine),
+            (here + 2, -share * (u * cosine + v * sine)),
+            (here + 3, share * (u * sine - v * cosine)),
             (here + 4, rate),
         )  # fmt: skip
+
+
+def _scale_change(scale_std: Floats) -> tuple[Floats, Floats]:
+    """Share (k - 1,) of its error that the scale keeps from knot to knot, and variance added.
+
+    Where a run of the path has a larger deviation than the one before, an error of its own is added
+    to that of before; where it has a smaller one, such an error ends (Gauss-Markov process).
+    """
+    before, after = scale_std[:-1] ** 2, scale_std[1:] ** 2
+    kept = np.minimum(after / before, 1.0)
+    return kept, after - kept**2 * before
 
 
 def _unit(vectors: Floats) -> Floats:

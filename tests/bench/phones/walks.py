@@ -130,6 +130,7 @@ def fuse_walk(walk: PublishedPhone, floor: Path | None) -> Mapping[str, Waypoint
         history.start.begin_ns,
         grid=grid,
         path_noise=history.path_noise,
+        noise_runs=history.noise_runs,
     )
     path = SMOOTHERS[0].smooth({"": evidence}).paths[""]
     product_m2 = path.correlation_ne * path.std_north_m * path.std_east_m

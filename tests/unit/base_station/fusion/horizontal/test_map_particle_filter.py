@@ -1,6 +1,4 @@
-"""Map particle filter: half a body keeps off a wall, and walls do not change the scale of a
-path.
-"""
+"""Map particle filter: half a body keeps off a wall."""
 
 from __future__ import annotations
 
@@ -47,11 +45,3 @@ def test_particles_keep_half_a_body_width_from_a_wall() -> None:
 
 def test_path_close_to_a_wall_is_no_evidence_against_the_plan() -> None:
     assert not walked_north(0.1, 0.05).is_contradicted
-
-
-def test_walls_leave_the_variance_of_the_scale_unchanged() -> None:
-    cloud = walked_north(1.0, 0.3)
-    for one in (cloud, MapParticleFilter.restore(cloud.save())):
-        mean, covariance = one.moments()
-        along = mean[2:4] / np.linalg.norm(mean[2:4])
-        assert math.sqrt(along @ covariance[2:4, 2:4] @ along) >= SCALE_STD
