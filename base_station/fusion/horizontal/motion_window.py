@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.horizontal.sampling import SCALE
+from base_station.fusion.horizontal.state import SCALE
 from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 

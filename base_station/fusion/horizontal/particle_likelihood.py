@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from base_station.fusion.horizontal.heading_hypotheses import GnssObservation, slow_error_jacobian
 from base_station.fusion.horizontal.particles import Particles
 from base_station.fusion.horizontal.resampling import JITTER_M, mahalanobis2
-from base_station.fusion.horizontal.sampling import SCALE
+from base_station.fusion.horizontal.state import SCALE
 from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, WALL

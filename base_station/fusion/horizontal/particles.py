@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from base_station.fusion.horizontal.resampling import jittered, normalised, resampled
 from base_station.fusion.horizontal.reseeding import Reseeding
-from base_station.fusion.horizontal.sampling import SCALE, draw
-from base_station.fusion.horizontal.state import SLOW
+from base_station.fusion.horizontal.sampling import draw
+from base_station.fusion.horizontal.state import SCALE, SLOW
 from base_station.fusion.kernels import DRIFT, STATES
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,6 @@ from base_station.fusion.kernels import STATES
 Floats = NDArray[np.float64]
 
 
-SCALE = 4  # column of a particle
 LEAST_SCALE = 0.2  # a smaller one, or a negative one, has no meaning
 
 

@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 
 SLOW = slice(4, 8)  # of the fixes' errors
 PLACE_AND_SLOW = [0, 1, 4, 5, 6, 7]
+SCALE = 4  # column of particles, which are [north, east, turn, drift, scale]
 PATH = [0, 1, 2, 3, DRIFT]  # of the path, in the order of ``port.Posterior``
 
 
