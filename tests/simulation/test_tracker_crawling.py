@@ -18,6 +18,7 @@ from edge.tracker.foot.zupt.zupt import is_gliding
 from edge.tracker.interface import Quality
 from edge.tracker.preprocessing.sample_ring import RING
 from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.bench.tracker.wearers import KINDS, stray
 from tests.rig.inertial_walk import inertial_samples
 
 CUT_S = 9.3  # into the crawl
@@ -42,6 +43,15 @@ def test_recording_that_starts_while_crawling_has_no_false_stance(seed):
     std_m = np.sqrt(np.trace(rows.position_cov_m2[:, :2, :2], axis1=1, axis2=2))
     held = (off_m <= 3.0 * std_m + 0.02) | (rows.quality != Quality.GOOD)
     assert np.mean(held) > 0.95
+
+
+@pytest.mark.parametrize("seed", [104, 109])
+def test_loop_that_is_crawled_from_the_first_sample_on_is_never_silently_wrong(seed):
+    """Where the loop closes, the heading's error moves it by its second and third order alone."""
+    kind = next(one for one in KINDS if one.does == "crawls, recorded from mid-crawl on")
+    errors = stray(kind, seed, calibrated=False)
+    assert abs(errors.heading_rad) > 1.0  # or nothing is tested
+    assert errors.silent == 0.0
 
 
 def standing(motion_m2ps4, speed_mps):

@@ -196,7 +196,9 @@ FILTER = np.dtype(
         ("rest_force_mps2", np.float64, 3),  # sensor axes, where the gyroscope bias was learned
         ("gyro_bias_per_k", np.float64, 3),
         ("scale_errors", SCALE_ERROR_STATE),  # see scale_misalignment
-        ("nonlinear_n_m", np.float64, 2),  # see reported_covariance
+        # What the heading's error does to the way beyond the first order; see reported_covariance.
+        ("second_order_n_m", np.float64, 2),
+        ("third_order_n_m", np.float64, 2),
         # What clipped rates hide in every swing alike; see hidden_turn.
         ("swing_hidden_rad2", np.float64),  # variance of the heading by this swing
         ("hidden_turn_rad", np.float64),  # by all so far

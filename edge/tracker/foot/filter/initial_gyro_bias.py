@@ -23,7 +23,7 @@ from edge.tracker.foot.filter.correction_tracking import widen_clone
 from edge.tracker.foot.state import FilterState
 
 OBSERVED_SHARE = 0.02  # of the variance at the start; less is known
-NONLINEAR_RATIO_MAX = 5.0  # times what was stated; beyond, the walk is as good as lost
+NONLINEAR_RATIO_MAX = 2.2  # times the stated deviation; beyond, the walk is as good as lost
 
 
 @njit()
@@ -105,8 +105,10 @@ def update_from_rest(state: FilterState, config: EskfConfig) -> None:
         return
     reported = max(state.unobserved_bias_std_radps, config.start.gyro_bias_std_radps)
     if square > reported**2:
+        ratio = min(math.sqrt(square) / reported, NONLINEAR_RATIO_MAX)
         for i in range(2):  # what is not linear was stated for one deviation
-            state.nonlinear_n_m[i] *= min(square / reported**2, NONLINEAR_RATIO_MAX)
+            state.second_order_n_m[i] *= ratio**2
+            state.third_order_n_m[i] *= ratio**3
         state.unobserved_bias_std_radps = math.sqrt(square)
     for i in range(SIZE):
         state.column[i] = _with_bias(state, i, off) / variance

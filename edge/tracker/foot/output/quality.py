@@ -7,12 +7,11 @@ import math
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.error_state import ATTITUDE, TURN
-from edge.tracker.foot.filter.error_model import heading_variance
+from edge.tracker.foot.error_state import ATTITUDE
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
+from edge.tracker.foot.output.reported_covariance import stated_heading_variance
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.foot.zupt.stance_consistency import height_is_lost
-from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, reported_gain_inflation
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
 from edge.tracker.preprocessing.sample_ring import Ring
@@ -84,11 +83,6 @@ def assign_quality(
         quality = LOST
     ring[slot].reasons = reasons
     ring[slot].quality = quality
-    yaw = ATTITUDE + 2
-    heading_var = heading_variance(p) + (noise_inflation(state, config) - 1.0) * p[yaw, yaw]
-    heading_var += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
-    heading_var += state.hidden_turn_rad**2
-    heading_var += (
-        unobserved_heading_variance(state) + (config.restart.turn_std_radps * open_s) ** 2
-    )
+    heading_var = stated_heading_variance(state, config)
+    heading_var += (config.restart.turn_std_radps * open_s) ** 2
     ring[slot].heading_std_rad = math.sqrt(heading_var)

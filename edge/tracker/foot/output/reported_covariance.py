@@ -2,7 +2,10 @@
 
 Beside the noise of the walk these are systematic, and as large as they move the walk as a whole:
 scale errors of the gyroscope turn it, those of the accelerometer make it too long or too short (and
-too high), and a heading error shortens it, whichever way it is wrong.  Before the foot has rested
+too high).  A heading error moves the way to one side by its sine and shortens it, whichever way it
+is wrong: the filter states the error itself instead of the sine.  On a way that returns, its first
+order may cancel where the others do not, so the second and third are stated beside it, of the whole
+heading error that is stated, as one that is alike in sign all the way.  Before the foot has rested
 the unobserved part of the gyroscope's bias is added, and so is what stances that contradict the
 swings have left (see stance_consistency).
 """
@@ -14,7 +17,7 @@ import math
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.error_state import SIZE, TURN
+from edge.tracker.foot.error_state import ATTITUDE, SIZE, TURN
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
 from edge.tracker.foot.filter.scale_misalignment import along
@@ -25,17 +28,29 @@ from edge.tracker.preprocessing.sample_ring import Ring
 
 @njit()
 def accumulate_heading_bias(state: FilterState, dt_s: float, config: EskfConfig) -> None:
-    """Add the distance of an interval times the variance of its heading.
+    """Add the way of an interval times what its stated heading may do to it beyond the first order.
 
     For large errors twice the mean of one minus the cosine takes the place of the variance.
     """
-    p = state.covariance
-    heading_var = heading_variance(p) + unobserved_heading_variance(state)
-    heading_var += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
-    heading_var = max(heading_var, 0.0)
+    heading_var = stated_heading_variance(state, config)
     variance = 2.0 * (1.0 - math.exp(-0.5 * heading_var))
-    for i in range(2):
-        state.nonlinear_n_m[i] += variance * dt_s * state.velocity_n_mps[i]
+    cube = variance * min(math.sqrt(heading_var), 1.0)
+    north_m, east_m = dt_s * state.velocity_n_mps[0], dt_s * state.velocity_n_mps[1]
+    state.second_order_n_m[0] += variance * north_m
+    state.second_order_n_m[1] += variance * east_m
+    state.third_order_n_m[0] -= cube * east_m
+    state.third_order_n_m[1] += cube * north_m
+
+
+@njit()
+def stated_heading_variance(state: FilterState, config: EskfConfig) -> float:
+    """Return the variance (rad^2) of the heading: the filter's, and what it does not model."""
+    p = state.covariance
+    yaw = ATTITUDE + 2
+    variance = heading_variance(p) + (noise_inflation(state, config) - 1.0) * p[yaw, yaw]
+    variance += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
+    variance += unobserved_heading_variance(state) + state.hidden_turn_rad**2
+    return float(max(variance, 0.0))
 
 
 @njit()
@@ -76,8 +91,9 @@ def report_covariance(
             )
             more_m2 += state.unobserved_effect[i] * state.unobserved_effect[j]
             more_m2 += state.hidden_way_n_m[i] * state.hidden_way_n_m[j]
-            # A normal error's fourth moment is three times its variance squared.
-            more_m2 += 0.75 * state.nonlinear_n_m[i] * state.nonlinear_n_m[j]
+            # Of a normal error the fourth moment is 3, the sixth 15 times the variance's power.
+            more_m2 += 3.0 / 4.0 * state.second_order_n_m[i] * state.second_order_n_m[j]
+            more_m2 += 15.0 / 36.0 * state.third_order_n_m[i] * state.third_order_n_m[j]
             reported_m2[i, j] += more_m2
             if i != j:
                 reported_m2[j, i] += more_m2
