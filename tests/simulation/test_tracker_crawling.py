@@ -47,7 +47,7 @@ def test_recording_that_starts_while_crawling_has_no_false_stance(seed):
 
 @pytest.mark.parametrize("seed", [104, 109])
 def test_loop_that_is_crawled_from_the_first_sample_on_is_never_silently_wrong(seed):
-    """Where the loop closes, the heading's error moves it by its second and third order alone."""
+    """At the loop's end the heading's error moves it by its second and third order alone."""
     kind = next(one for one in KINDS if one.does == "crawls, recorded from mid-crawl on")
     errors = stray(kind, seed, calibrated=False)
     assert abs(errors.heading_rad) > 1.0  # or nothing is tested
