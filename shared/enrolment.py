@@ -87,10 +87,10 @@ class Enrolment:
 
         Raises ConfigError where one is already, or it cannot be written: then there is none.
         """
-        write_secret(path, self.to_toml().encode(), self.made_again)
+        write_secret(path, self.to_toml().encode(), self.renewal_command)
 
     @property
-    def made_again(self) -> str:
+    def renewal_command(self) -> str:
         """The command, for a person."""
         of_kind = {
             Holder.TRACKER: "--tracker ",

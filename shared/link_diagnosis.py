@@ -28,7 +28,7 @@ _ALERTS = {
 }
 
 
-def why_no_link(connect: Sequence[str], identity: TlsIdentity | None, now: datetime) -> str:
+def link_failure_reason(connect: Sequence[str], identity: TlsIdentity | None, now: datetime) -> str:
     """One sentence for each endpoint; takes some seconds.  ``now`` is aware, by this clock."""
     if identity is not None and (problem := validity_problem(identity, now)) is not None:
         return problem

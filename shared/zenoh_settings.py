@@ -115,9 +115,9 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
                     "flows": ["ingress"],
                     "messages": [kind],
                     "key_exprs": [f"{ROOT}/{keys}" for keys in under],
-                    "size_limit": most_bytes,
+                    "size_limit": max_bytes,
                 }
-                for name, kind, most_bytes, under in _LARGEST
+                for name, kind, max_bytes, under in _LARGEST
             ],
         }
         if endpoint.rate_limited_queries:

@@ -17,7 +17,7 @@ from base_station.api.console_files import serve_console
 from base_station.api.document import complete_document, operation_id
 from base_station.api.forms import MAX_BYTES
 from base_station.api.guidance import STEP_S, Guidance
-from base_station.api.head import HeadRequestMiddleware
+from base_station.api.head_requests import HeadRequestMiddleware
 from base_station.api.headers import SecurityHeadersMiddleware
 from base_station.api.login_throttle import LoginThrottle
 from base_station.api.problems import (

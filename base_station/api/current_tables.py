@@ -20,7 +20,7 @@ _LOOK_S = 0.01
 
 
 async def _current_station(station: Station, _: Viewer) -> Services:
-    is_over = station.projection.hasten()
+    is_over = station.projection.flush_soon()
     end_s = time.monotonic() + MAX_WAIT_S
     while not is_over() and time.monotonic() < end_s:
         await asyncio.sleep(_LOOK_S)

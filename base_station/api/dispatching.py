@@ -11,7 +11,7 @@ from base_station.api.routes.incidents import new_incident_id
 from base_station.api.services import Services
 from base_station.dispatch.call_signs import CallSigns, KnownUnit, MatchedCallSign
 from base_station.dispatch.config import Opening
-from base_station.dispatch.in_words import incident_name
+from base_station.dispatch.description import incident_name
 from base_station.views.station import dispatch_view
 from base_station.views.wire import DispatchView, IncidentView, Snapshot
 from shared.errors import UserError

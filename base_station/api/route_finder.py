@@ -40,17 +40,17 @@ class RouteFinder:
 
     def routes(
         self,
-        look: Callable[[], tuple[Snapshot, Trails]],
+        current: Callable[[], tuple[Snapshot, Trails]],
         unit_id: str,
         rescuer_ids: Callable[[Snapshot], Iterable[str]],
     ) -> tuple[Snapshot, dict[str, Route]]:
         """Known routes of the nearest rescuers to a unit, and the picture that they are of.
 
-        ``look`` gives the picture of now, ``rescuer_ids`` gives the units of a picture that may go.
+        ``current`` returns the current picture, ``rescuer_ids`` its units that may be sent.
         """
         with self._lock:
             if not self._has_kept(unit_id):
-                snapshot, trails = look()
+                snapshot, trails = current()
                 graph = WayGraph(_walked(snapshot, trails), self._lattice_of(snapshot))
                 self._made = time.monotonic(), snapshot, graph
             assert self._made is not None

@@ -115,7 +115,7 @@ class Services(LoginServices):
             raise idempotency_key_reused()
         if done.refused is not None:
             raise UserError(map_texts(done.refused.reason, self.roster.shown))
-        self.projection.hasten()
+        self.projection.flush_soon()
         return done
 
     def picture(self) -> Snapshot:

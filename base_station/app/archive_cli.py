@@ -55,7 +55,7 @@ def copy_incidents(
 @archive.command("list")
 def list_incidents(archive: _Archive) -> None:
     """The incidents that are there, by their times."""
-    from base_station.archive.entry import archived_ids, require_entry  # noqa: PLC0415
+    from base_station.archive.catalogue import archived_ids, require_entry  # noqa: PLC0415
     from base_station.archive.store import open_store  # noqa: PLC0415
 
     store = open_store(archive)
@@ -94,8 +94,8 @@ def fetch(
     out: Annotated[Path, typer.Argument(help="File to write: incident.mcap.", callback=writable)],
 ) -> None:
     """Bring an incident back as one file that stands alone: report, export, assess take it."""
+    from base_station.archive.catalogue import require_entry  # noqa: PLC0415
     from base_station.archive.checking import fetch_log  # noqa: PLC0415
-    from base_station.archive.entry import require_entry  # noqa: PLC0415
     from base_station.archive.store import open_store  # noqa: PLC0415
 
     store = open_store(archive)

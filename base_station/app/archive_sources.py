@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from base_station.app.offline_log import OfflineLog, Report
+from base_station.archive.archived_files import ArchivedImports, ArchivedRadio
+from base_station.archive.catalogue import require_entry
 from base_station.archive.copying import ArchiveCopier
-from base_station.archive.enclosed import ArchivedImports, ArchivedRadio
-from base_station.archive.entry import require_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import ArchiveStore, open_store
 from base_station.engine.log_feed import FolderFeed
@@ -56,7 +56,7 @@ def open_archived_log(
     folder = DataFolder(scratch)
     store = closing.enter_context(Store(folder.database))
     put_rows(store, entry.tables)
-    Roster(store, SystemClock()).bring_people(entry.people)
+    Roster(store, SystemClock()).add_unknown_people(entry.people)
     defects = LogDefects(folder.log, (), is_written=False, on_defect=report)
     for words in (*entry.damage, NOT_FETCHED):
         defects.note(words)

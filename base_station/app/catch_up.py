@@ -37,7 +37,7 @@ class CatchUp:
         self._worker = Worker.periodic(
             "catching up",
             EVERY_S,
-            lambda _: self._look(),
+            lambda _: self._run(),
             "what was decided while the database was away is not in it yet",
         )
 
@@ -52,8 +52,8 @@ class CatchUp:
                 self._line.hang_up()
         self._worker.close()
 
-    def _look(self) -> None:
-        """Raises StoreError where it comes to nothing; it is tried again."""
+    def _run(self) -> None:
+        """Project missing records, if there are any.  Raises StoreError; the worker tries again."""
         missing = self._projection.missing()
         if missing is None:
             return

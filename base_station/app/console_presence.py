@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable
 
-from base_station.app.kept_announcement import KeptAnnouncement
 from base_station.app.listening_addresses import interfaces_of, reachable_addresses
+from base_station.app.service_announcement import ServiceAnnouncement
 from base_station.config import HttpConfig, host_and_port
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.hosts import own_hosts
@@ -16,7 +16,7 @@ from shared.discovery import ConsoleAnnouncement
 _log = logging.getLogger(__name__)
 
 
-class ConsolePresence(KeptAnnouncement):
+class ConsolePresence(ServiceAnnouncement):
     """Announcement kept as the machine's addresses are; ``update`` now and then."""
 
     def __init__(self, config: HttpConfig, own: Callable[[], Iterable[str]] = own_hosts) -> None:

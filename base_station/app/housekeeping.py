@@ -56,10 +56,10 @@ class Housekeeping:
         """One round."""
         parts, resources = self._parts, self._parts.resources
         self._index.update(resources.recorder.segments())
-        resources.disk.check.look(resources.recorder.segments())
+        resources.disk.check.check_next_segment(resources.recorder.segments())
         if not resources.config.standby.name:  # else it comes from the other station
-            self._lost.look()
-        parts.outdated_copies.look()
+            self._lost.search_further()
+        parts.outdated_copies.refresh()
         parts.restarts.restart_if_stale()
         self._erasures.answer_pending()
         self._imports.answer_pending()
@@ -76,9 +76,9 @@ class Housekeeping:
         """Submit the station's own changes of the live state."""
         parts, live = self._parts, self._parts.live
         self._enrolled.update()
-        self._older.look()
+        self._older.renew()
         if self._retention is not None:
-            self._retention.look()
+            self._retention.request_next()
         if live.thresholds != live.configured_thresholds:
             parts.gate.submit(STATION_ID, SetThresholds(live.configured_thresholds))
         if live.fuser != live.configured_fuser:

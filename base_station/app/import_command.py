@@ -58,7 +58,7 @@ def import_(
         refused = 0
         for file in files or ():
             try:
-                for line in imports.bring_in(file, shift_s, utc_offset_h):
+                for line in imports.import_file(file, shift_s, utc_offset_h):
                     typer.echo(line)
             except UserError as error:  # the others are brought in all the same
                 typer.echo(str(error), err=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from base_station.app.logged_action import log_action
 from base_station.core.person_references import with_references
-from base_station.importers.bring_in import ImportDesk, require_anchor
+from base_station.importers.import_service import ImportService, require_anchor
 from base_station.importers.interface import ImportOptions
 from base_station.importers.requests import ImportAction, request_action
 from base_station.storage.data_folder import DataFolder
@@ -56,7 +56,7 @@ class FolderImports:
     by: str
     is_locked: bool  # no station runs on the folder
 
-    def bring_in(self, file: Path, shift_s: float, utc_offset_h: float | None) -> Sequence[str]:
+    def import_file(self, file: Path, shift_s: float, utc_offset_h: float | None) -> Sequence[str]:
         """Gives lines about the content.  Raises UserError with the fault of the file."""
         desk = self._desk()
         options = ImportOptions(file.name, self.incident.incident_id, shift_s, utc_offset_h)
@@ -66,7 +66,7 @@ class FolderImports:
             except OSError as error:
                 raise UserError(f"{file} cannot be read: {error.strerror or error}") from error
             self._catalogue.folder.copy(file, path)
-            import_id = desk.bring_in(path, options, self._act)
+            import_id = desk.import_file(path, options, self._act)
         row = self._catalogue.entry(self.incident.incident_id, import_id)
         return [] if row is None else [self._line(row), *self._warnings(row)]
 
@@ -92,9 +92,11 @@ class FolderImports:
     def _roster(self) -> Roster:
         return Roster(self.store, SystemClock())
 
-    def _desk(self) -> ImportDesk:
+    def _desk(self) -> ImportService:
         anchor = require_anchor(Records(self.store, SystemClock()), self.incident)
-        return ImportDesk(self._catalogue, self.incident, anchor, self.folder.recorded_until_ns())
+        return ImportService(
+            self._catalogue, self.incident, anchor, self.folder.recorded_until_ns()
+        )
 
     def _act(self, action: ImportAction) -> None:
         nameless = with_references(action, self._roster.ids_by_name())

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 
 from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.archive.finding import ArchivedLogs
+from base_station.archive.archived_logs import ArchivedLogs
 from base_station.archive.partly_archived import opened_copy
 from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.radio.radio_log import RadioLog
@@ -35,7 +35,7 @@ from base_station.storage.db.salvage import damage_of
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
-from base_station.storage.log_defects import LogDefects, being_written
+from base_station.storage.log_defects import LogDefects, open_segment_info
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
 from shared.errors import DatabaseAwayError, LogError, UserError
@@ -100,7 +100,7 @@ class OfflineLog:
             log.watch,
             own,
             flaws=defects,
-            look=defects.look,
+            check_next_chunk=defects.check_next_chunk,
             note=defects.note,
             console=None if recompute else log.everything,
         )
@@ -167,7 +167,7 @@ def open_offline_log(
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
     if path.is_file() and (incident := read_incident_file(path)) is not None:
-        Roster(store, SystemClock()).bring_people(incident.people)
+        Roster(store, SystemClock()).add_unknown_people(incident.people)
         _take_enclosed(path, incident.incident_id, folder)
     return offline_log
 
@@ -206,7 +206,7 @@ def _archived_log(
     archived = ArchivedLogs(
         ArchivedCopies(store),
         records,
-        segments=lambda: map(being_written, own_segments(folder.log)[0]),
+        segments=lambda: map(open_segment_info, own_segments(folder.log)[0]),
         known=lambda: known_segments_of(records),
     ).instead_of_log(incident)
     if archived is None:
@@ -250,7 +250,7 @@ def _open_log(
     )
     for path, reason in left_out.items():
         defects.note_foreign(path, reason)
-    defects.look_at_files()
+    defects.check_files()
     log = FolderFeed(folder.log, on_damage=defects.note_damage)
     if decides_again and not defects() and decisions_differ(log.records(), past_pipeline(None)):
         defects.note(DIFFERS)

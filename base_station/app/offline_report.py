@@ -10,7 +10,7 @@ from pathlib import Path
 from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
-from base_station.report.gathering import Progress, ReportSources
+from base_station.report.data_collection import Progress, ReportSources
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster

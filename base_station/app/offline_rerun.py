@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from base_station.app.offline_log import OfflineLog, open_offline_log
 from base_station.app.retracking import Retracker, Retracking, RetrackSettings
-from base_station.replay.rerun.black_boxes import BlackBoxBoot, Run, boots_below, given_boots
+from base_station.replay.rerun.black_boxes import BlackBoxBoot, Run, boots_below, boots_in_files
 from base_station.replay.rerun.comparison import (
     RaisedAlarm,
     RerunReport,
@@ -69,7 +69,7 @@ def open_rerun(
     Raises UserError where there is no such incident, where a given recording does not belong to
     it, or where there is none.
     """
-    carried = list(given_boots(given))
+    carried = list(boots_in_files(given))
     log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)
     records = Records(log.store, SystemClock())
     incident = records.require_incident(incident_id)

@@ -1,6 +1,6 @@
-"""Makes assignments anew that are records of an earlier version, which have the name in them.
+"""Renews assignments that an earlier version recorded with the name of the person.
 
-Else the station would go on writing that name into the texts of alarms.
+Otherwise the station would continue to write that name into the texts of alarms.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from shared.messages.station import Assign
 
 
 class OlderAssignments:
-    """For the station that leads, from one thread."""
+    """Used by the leading station, from one thread."""
 
     def __init__(self, roster: Roster, gate: OperatorGate) -> None:
         self._roster = roster
         self._gate = gate
         self._is_done = False
 
-    def look(self) -> None:
-        """Once in a run.  Assignments stay; names that only the log has stay there."""
+    def renew(self) -> None:
+        """Submit each such assignment again, once in a run; names in the log are not changed."""
         if self._is_done:
             return
         self._is_done = True

@@ -271,7 +271,7 @@ def _output_enrolment(
         elif enrolment.holder is Holder.DEPARTMENT_STATION:
             typer.echo("there: put it into the settings, [department] enrolment = ...")
     if png is not None:
-        save_png(qr_code(enrolment), png, enrolment.made_again)
+        save_png(qr_code(enrolment), png, enrolment.renewal_command)
         typer.echo(f"{png}: the enrolment as a QR code")
     if qr:
         typer.echo(as_text(qr_code(enrolment)))

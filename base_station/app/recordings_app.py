@@ -20,7 +20,7 @@ from base_station.unit_sync.recordings.transfer import (
     Transfer,
     TransferRequest,
     TransferState,
-    ask_over,
+    ask_via_bus,
 )
 from shared.bus_zenoh import ZenohBus
 from shared.clock import SystemClock
@@ -60,7 +60,7 @@ def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Pa
         bus = ZenohBus(station_endpoint(config.data, config.bus.listen))
         closing.callback(bus.close)
         folder = DataFolder(config.data).recordings
-        fetch = Transfer(ask_over(bus), folder, wanted, clock)
+        fetch = Transfer(ask_via_bus(bus), folder, wanted, clock)
         closing.callback(fetch.close)
         details = f"{wanted.unit_id} from {wanted.from_ns} to {wanted.to_ns}"
         Records(store, clock).audit(getpass.getuser(), "FetchedRecording", details)

@@ -24,7 +24,7 @@ from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor
-from base_station.replay.read_only import ReadOnlyGate
+from base_station.replay.read_only_gate import ReadOnlyGate
 from base_station.replay.timelines.unit_timeline import read_timeline
 from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.storage.db.accounts import Accounts

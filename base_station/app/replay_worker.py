@@ -9,7 +9,7 @@ import msgspec
 from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.copying import ArchiveCopier
-from base_station.archive.partly_archived import here_or_lost, opened_copy, partly_archived
+from base_station.archive.partly_archived import opened_copy, partly_archived, without_archived
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
@@ -20,8 +20,8 @@ from base_station.replay.processes.post_processing_work import (
     StationTime,
     bounded,
     incident_of,
+    lower_priority,
     post_process,
-    stand_back,
 )
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
@@ -44,8 +44,8 @@ from base_station.replay.processes.wire import (
     read_job,
 )
 from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline
+from base_station.report.data_collection import ReportSources, collect_report_data
 from base_station.report.document import html_document
-from base_station.report.gathering import ReportSources, gather
 from base_station.report.pdf import pdf_document
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -78,7 +78,7 @@ def work(line: FrameChannel) -> None:
         case ReplayJob():
             replay(job, _archive(job, log, flaws), SystemClock(), line)
         case PostProcessingJob():
-            _look_back(job, _archive(job, log, flaws), line)
+            _post_process(job, _archive(job, log, flaws), line)
         case ReportJob():
             _report(job, log, flaws, line)
         case CatchUpJob():
@@ -109,7 +109,7 @@ def _archive(
         past_pipeline,
         log.watch,
         flaws=flaws,
-        look=flaws.look,
+        check_next_chunk=flaws.check_next_chunk,
         note=flaws.note,
         console=log.everything,
     )
@@ -137,15 +137,15 @@ def _flaws_of(job: Job) -> LogDefects:
         case TimelineJob():
             return LogDefects(
                 log,
-                here_or_lost(job.known_segments, job.archived),
+                without_archived(job.known_segments, job.archived),
                 is_written=True,
                 from_ns=job.from_ns,
                 until_ns=job.until_ns,
             )
 
 
-def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> None:
-    stand_back(line)
+def _post_process(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> None:
+    lower_priority(line)
     with bounded(job, line), open_database(Path(job.database)) as store:
         clock = StationTime(job.now_ns, SystemClock())
         post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
@@ -153,7 +153,7 @@ def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> 
 
 
 def _catch_up(job: CatchUpJob, archive: Archive, line: FrameChannel) -> None:
-    stand_back(line)
+    lower_priority(line)
     try:
         with open_database(Path(job.database)) as store:
             project_since(store, archive, job.since_ns)
@@ -163,7 +163,7 @@ def _catch_up(job: CatchUpJob, archive: Archive, line: FrameChannel) -> None:
 
 
 def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
-    stand_back(line)
+    lower_priority(line)
     try:
         with open_database(Path(job.database)) as store:
             clock = SystemClock()
@@ -177,14 +177,16 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
                 defects=flaws,
                 recorded_until_ns=DataFolder(Path(job.log).parent).recorded_until_ns,
             )
-            page = html_document(gather(sources, records.require_incident(job.incident_id)))
+            page = html_document(
+                collect_report_data(sources, records.require_incident(job.incident_id))
+            )
         line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
     except MusterError as error:
         line.send(Failure.of(error))
 
 
 def _copy_incidents(job: ArchiveJob, log: FolderFeed, line: FrameChannel) -> None:
-    stand_back(line)
+    lower_priority(line)
     try:
         with open_database(Path(job.database)) as store:
             folder = DataFolder(Path(job.log).parent)
@@ -201,7 +203,7 @@ def _copy_incidents(job: ArchiveJob, log: FolderFeed, line: FrameChannel) -> Non
 
 def _timeline(job: TimelineJob, own: FolderFeed, flaws: LogDefects, line: FrameChannel) -> None:
     log = partly_archived(own, job.archived, flaws) if job.archived else own
-    stand_back(line)
+    lower_priority(line)
     request = TimelineRequest(job.unit_id, Window(job.from_ns, job.until_ns), job.buckets)
     try:
         with open_database(Path(job.database)) as store:

@@ -30,8 +30,8 @@ def report(
     """Write the report on an incident: its events, the trails of its members, and the gaps."""
     # Imported where needed: they take their time, and a wrong option is refused before.
     from base_station.app.offline_report import open_report_sources  # noqa: PLC0415
+    from base_station.report.data_collection import collect_report_data  # noqa: PLC0415
     from base_station.report.document import html_document  # noqa: PLC0415
-    from base_station.report.gathering import gather  # noqa: PLC0415
     from base_station.report.pdf import pdf_document, require_library  # noqa: PLC0415
 
     if pdf is not None:
@@ -43,7 +43,7 @@ def report(
             with progress_bar("judging positions") as on_progress:
                 opened.assess(on_progress)
         with progress_bar("gathering the report") as on_progress:
-            page = html_document(gather(opened.sources, opened.incident, on_progress))
+            page = html_document(collect_report_data(opened.sources, opened.incident, on_progress))
     _write(html or Path(f"{opened.incident.incident_id}.html"), page)
     if pdf is not None:
         _write(pdf, pdf_document(page))

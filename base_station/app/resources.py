@@ -23,7 +23,7 @@ from base_station.security.router.process import RouterProcess
 from base_station.security.router.router import station_endpoint
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.recorder import Recorder
-from base_station.unit_sync.recordings.transfer import ask_over
+from base_station.unit_sync.recordings.transfer import ask_via_bus
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.bus import Bus
 from shared.bus_zenoh import ZenohBus
@@ -86,7 +86,7 @@ def open_station(
     router.wait_open()
     bus = ZenohBus(router.endpoint)
     closing.callback(bus.close)
-    recordings = TransferQueue(ask_over(bus), folder.recordings, disk.clock)
+    recordings = TransferQueue(ask_via_bus(bus), folder.recordings, disk.clock)
     closing.enter_context(recordings)
     return Resources(
         config=config,

@@ -48,7 +48,7 @@ class RestartControl:
     def restart_if_stale(self) -> None:
         """Start anew where the live state is stale, and no incident is open meanwhile."""
         has_standby, in_incident = self._has_standby(), self._is_in_incident()
-        if self.stale.can_be_made_good(
+        if self.stale.can_recover(
             leads=self._is_leader(), spared=has_standby, in_incident=in_incident
         ):
             self.request(None)

@@ -305,7 +305,7 @@ class RunningStation:
     def _on_stop(self) -> None:
         resources = self._resources
         self._post_processor.close()  # a request that waits for it would keep the station
-        self._end.begin(lambda: resources.recorder.not_kept, resources.router.close)
+        self._end.begin(lambda: resources.recorder.unsaved_loss, resources.router.close)
 
     def _facts(self) -> StationFacts:
         """The engine asks once a second, with a full disk and at a standby too; hanging, it does

@@ -10,8 +10,8 @@ import logging
 import socket
 from collections.abc import Callable, Iterable
 
-from base_station.app.kept_announcement import KeptAnnouncement
 from base_station.app.listening_addresses import interfaces_of, reachable_addresses
+from base_station.app.service_announcement import ServiceAnnouncement
 from base_station.config import StationConfig, endpoint_address
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.folder import PkiFolder
@@ -23,7 +23,7 @@ from shared.tls import fingerprint
 _log = logging.getLogger(__name__)
 
 
-class StationPresence(KeptAnnouncement):
+class StationPresence(ServiceAnnouncement):
     """Kept as the machine's addresses and the certificate are; ``update`` now and then."""
 
     def __init__(

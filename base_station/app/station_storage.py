@@ -10,7 +10,7 @@ from pathlib import Path
 
 from base_station.app.factories import Announce, project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
-from base_station.archive.finding import ArchivedLogs
+from base_station.archive.archived_logs import ArchivedLogs
 from base_station.engine.log_feed import FolderFeed, LogFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.fusion.smoothing import SMOOTHERS

@@ -23,7 +23,7 @@ from shared.coded_text import coded
 from shared.errors import ArchiveError, StoreError
 from shared.worker import Worker
 
-LOOK_EVERY_S = 10.0
+POLL_INTERVAL_S = 10.0
 LONGEST_PAUSE_S = 600.0
 _CLOSE_WITHIN_S = 5.0
 _log = logging.getLogger(__name__)
@@ -50,13 +50,13 @@ class AutomaticArchive:
         place: ArchivingContext,
         copies: ArchivedCopies,
         clock: Clock,
-        look_every_s: float = LOOK_EVERY_S,
+        poll_interval_s: float = POLL_INTERVAL_S,
     ) -> None:
         """Raises ConfigError where a library is missing that the archive needs."""
         self._config, self._place = config, place
         self._address = open_store(config.location).address
         self._copies, self._clock = copies, clock
-        self._look_every_s = self._pause_s = look_every_s
+        self._poll_interval_s = self._pause_s = poll_interval_s
         self._lock = Lock()  # guards the fields below
         self._line: wire.FrameChannel | None = None  # to the process that is at work
         self._closed = False
@@ -120,7 +120,7 @@ class AutomaticArchive:
     def _step(self) -> float:
         """Copy due incidents; gives the pause after them."""
         if not self._place.leads():
-            return self._look_every_s
+            return self._poll_interval_s
         try:
             waiting = self._copies.waiting(self._address, closed_until_ns(self._clock))
             self._note_waiting(len(waiting))
@@ -129,7 +129,7 @@ class AutomaticArchive:
         except (ArchiveError, StoreError) as error:
             return self._note_failure(str(error))
         self._note_success()
-        return self._look_every_s
+        return self._poll_interval_s
 
     def _copy(self) -> None:
         """Raises ArchiveError or StoreError where it is not done."""
@@ -189,7 +189,7 @@ class AutomaticArchive:
             if self._reason:
                 _log.info("the archive %s takes incidents again", self._address)
             self._reason, self._away_since_ns = "", None
-        self._pause_s = self._look_every_s
+        self._pause_s = self._poll_interval_s
 
     def _note_failure(self, reason: str) -> float:
         with self._lock:

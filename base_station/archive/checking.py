@@ -6,12 +6,12 @@ import hashlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from base_station.archive.entry import (
+from base_station.archive.catalogue import (
     LOG_NAME,
     CatalogueEntry,
     archived_ids,
-    leftovers,
     name_in_archive,
+    obsolete_files,
     require_entry,
     unfinished_ids,
 )
@@ -35,7 +35,7 @@ def defects_of(
     ids = archived_ids(store)
     for number, incident_id in enumerate(ids):
         entry = require_entry(store, incident_id)
-        if left := leftovers(store, entry):
+        if left := obsolete_files(store, entry):
             yield (
                 incident_id,
                 f"has files of an earlier copy ({', '.join(left)}): copy it once more",

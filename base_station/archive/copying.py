@@ -11,8 +11,7 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
-from base_station.archive.checking import defect_of
-from base_station.archive.entry import (
+from base_station.archive.catalogue import (
     CONSOLE_NAME,
     ENTRY_NAME,
     LOG_NAME,
@@ -20,11 +19,12 @@ from base_station.archive.entry import (
     VERSION,
     CatalogueEntry,
     encoded_entry,
-    leftovers,
     name_in_archive,
+    obsolete_files,
     read_entry,
     stored_apart,
 )
+from base_station.archive.checking import defect_of
 from base_station.archive.redacted_copy import (
     CopyIncompleteError,
     ErasedSubjects,
@@ -193,7 +193,7 @@ class ArchiveCopier:
 
     def _remove_leftovers(self, entry: CatalogueEntry) -> None:
         """Remove the files of the copy that this one has replaced."""
-        for name in leftovers(self._archive, entry):
+        for name in obsolete_files(self._archive, entry):
             self._archive.remove(name)
 
     def _is_current(self, entry: CatalogueEntry, incident: IncidentRow, known_ns: int) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 
-from base_station.archive.entry import CONSOLE_NAME, LOG_NAME, name_in_archive
+from base_station.archive.catalogue import CONSOLE_NAME, LOG_NAME, name_in_archive
 from base_station.archive.store import ArchiveStore
 from base_station.engine.log_feed import LogFeed
 from base_station.storage.db.archived import ArchivedFile

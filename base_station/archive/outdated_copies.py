@@ -24,8 +24,8 @@ class OutdatedCopies:
         self._copies, self._archive, self._leads = copies, archive, leads
         self._by_address: dict[str, int] = {}
 
-    def look(self) -> None:
-        """Raises StoreError."""
+    def refresh(self) -> None:
+        """Read the counts from the database again.  Raises StoreError."""
         self._by_address = self._copies.outdated_by_erasure()
 
     def problems(self) -> tuple[str, ...]:

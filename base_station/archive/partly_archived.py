@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Container, Iterator, Sequence
 from dataclasses import dataclass
 
-from base_station.archive.entry import decoded_entry
+from base_station.archive.catalogue import decoded_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import RecordSource
@@ -68,7 +68,7 @@ def partly_archived(
     return PartlyArchivedFeed(own, opened)
 
 
-def here_or_lost(
+def without_archived(
     known: Collection[KnownSegment], parts: Sequence[ArchivedPart]
 ) -> tuple[KnownSegment, ...]:
     """Segments without those whose incident is read in an archive."""

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import msgspec
 
+from base_station.archive.catalogue import LOG_NAME, CatalogueEntry, name_in_archive
 from base_station.archive.checking import fetch_log
-from base_station.archive.entry import LOG_NAME, CatalogueEntry, name_in_archive
 from base_station.archive.store import ArchiveStore
 from base_station.core.erasure.erasure import (
     CaptureClocks,

@@ -372,7 +372,7 @@ class StationEngine:
         self._checkpoint_writer.check()
         seen = {
             "log": self._ports.log.problem,
-            "disk": self._ports.log.little_room,
+            "disk": self._ports.log.low_disk_space,
             "store": self._ports.projection.problem(),
         }
         for report in list(self._health.check(seen, self._pipeline.state.problems)):

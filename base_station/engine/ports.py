@@ -61,7 +61,7 @@ class Log(Protocol):
         ...
 
     @property
-    def little_room(self) -> str:
+    def low_disk_space(self) -> str:
         """Warning that room is short, as a sentence for a person; empty: there is room."""
         ...
 

@@ -40,7 +40,7 @@ class RecentSamples:
         values = dict(pair.split("=", 1) for pair in parameters.split(";") if "=" in pair)
         try:
             boot_id, first, last = (int(values[name]) for name in ("epoch", "from", "to"))
-            most_bytes = min(int(values.get("total", _MOST_REPLY_BYTES)), _MOST_REPLY_BYTES)
+            max_bytes = min(int(values.get("total", _MOST_REPLY_BYTES)), _MOST_REPLY_BYTES)
         except (KeyError, ValueError):
             _log.warning("a question for %s makes no sense: %r", key, parameters)
             return
@@ -51,8 +51,8 @@ class RecentSamples:
         entries: list[JournalEntry] = []
         for seq in sorted(seq for seq in found if first <= seq <= last):
             entries.append(JournalEntry(seq, IMU.suffix, found[seq]))
-            most_bytes -= len(found[seq])
-            if most_bytes <= 0:
+            max_bytes -= len(found[seq])
+            if max_bytes <= 0:
                 last = seq
                 break
         yield JournalChunk(boot_id, first, last, tuple(entries), raw_only=True).to_bytes()

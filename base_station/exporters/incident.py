@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from base_station.dispatch.in_words import description
+from base_station.dispatch.description import description
 from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
 from base_station.site.plan import salvage_plan
 from base_station.site.storeys import storey_of

@@ -11,7 +11,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 
 BY_RETENTION = "retention"  # as whose wish the audit has these erasures
-LOOK_EVERY_S = 60.0
+POLL_INTERVAL_S = 60.0
 _log = logging.getLogger(__name__)
 
 EraseIncident = Callable[[str], ErasureJob]  # raises UserError where it has to wait
@@ -35,15 +35,17 @@ class IncidentRetention:
         self._keep_ns = keep_ns
         self._records, self._erasures, self._clock = records, erasures, clock
         self._erase = erase
-        self._next_look_ns = 0
+        self._next_check_ns = 0
         self._tried: set[tuple[str, int]] = set()
 
-    def look(self) -> None:
-        """Called often, it looks every minute.  Raises StoreError."""
+    def request_next(self) -> None:
+        """Request the erasure of the next incident that is due; the check is made once a minute,
+        however often this is called.  Raises StoreError.
+        """
         now_ns = self._clock.monotonic_ns()
-        if now_ns < self._next_look_ns:
+        if now_ns < self._next_check_ns:
             return
-        self._next_look_ns = now_ns + round(LOOK_EVERY_S * NS_PER_S)
+        self._next_check_ns = now_ns + round(POLL_INTERVAL_S * NS_PER_S)
         if any(not one.state.is_over for one in self._erasures.all()):
             return
         closed_before_ns = self._clock.utc_ns() - self._keep_ns

@@ -15,7 +15,7 @@ log = logging.getLogger(__name__)
 
 EXIT_CODE = 1
 _PATIENCE_S = 6.0  # with a disk that may answer yet
-_LOOK_EVERY_S = 0.5
+_POLL_INTERVAL_S = 0.5
 
 
 class ShutdownWatchdog:
@@ -32,25 +32,25 @@ class ShutdownWatchdog:
     def __exit__(self, *_: object) -> None:
         self._is_over.set()
 
-    def begin(self, not_kept: Callable[[], str], end_children: Callable[[], None]) -> None:
+    def begin(self, unsaved_loss: Callable[[], str], end_children: Callable[[], None]) -> None:
         """From any thread, more than once too.
 
-        ``not_kept``: records missing on a disk that hangs, as a sentence for a person; empty: it
-        answers.  ``end_children`` ends processes that would outlive this program.
+        ``unsaved_loss``: records missing on a disk that hangs, as a sentence for a person; empty:
+        the disk answers.  ``end_children`` ends processes that would outlive this program.
         """
         with self._lock:
             if self._has_begun:
                 return
             self._has_begun = True
         Thread(
-            target=self._watch, args=(not_kept, end_children), name="end-in-time", daemon=True
+            target=self._watch, args=(unsaved_loss, end_children), name="end-in-time", daemon=True
         ).start()
 
-    def _watch(self, not_kept: Callable[[], str], end_children: Callable[[], None]) -> None:
+    def _watch(self, unsaved_loss: Callable[[], str], end_children: Callable[[], None]) -> None:
         patience_s = _PATIENCE_S
         while not self._is_over.wait(patience_s):
-            patience_s = _LOOK_EVERY_S
-            if lack := not_kept():
+            patience_s = _POLL_INTERVAL_S
+            if lack := unsaved_loss():
                 log.critical("ended although the disk does not answer: %s", lack)
                 end_children()
                 os._exit(EXIT_CODE)

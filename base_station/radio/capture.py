@@ -28,8 +28,8 @@ NOT_INSTALLED = (
 
 def capture(config: RadioConfig, out: BinaryIO) -> None:
     """Until the source ends.  Raises SourceError."""
+    from base_station.radio.packet_stamper import PacketStamper  # noqa: PLC0415
     from base_station.radio.sources import sounds_of  # noqa: PLC0415  # an optional library
-    from base_station.radio.stamping import PacketStamper  # noqa: PLC0415
 
     stamper = PacketStamper(config)
     for sound in sounds_of(config):

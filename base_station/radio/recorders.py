@@ -16,7 +16,7 @@ from shared.worker import Worker
 logger = logging.getLogger(__name__)
 
 _NS_PER_H = 3_600 * NS_PER_S
-_LOOK_EVERY_S = 60.0
+_POLL_INTERVAL_S = 60.0
 
 
 class RadioRecorders:
@@ -39,7 +39,7 @@ class RadioRecorders:
             for name, config in channels.items()
         )
         self._cleaner = Worker.periodic(
-            "radio-retention", _LOOK_EVERY_S, self._remove_old, "old radio audio is not deleted"
+            "radio-retention", _POLL_INTERVAL_S, self._remove_old, "old radio audio is not deleted"
         )
 
     def start(self) -> None:
@@ -48,7 +48,7 @@ class RadioRecorders:
             channel.start()
 
     def close(self) -> None:
-        self._cleaner.close(_LOOK_EVERY_S)
+        self._cleaner.close(_POLL_INTERVAL_S)
         for channel in self._channels:
             channel.close()
 

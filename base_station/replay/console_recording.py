@@ -9,7 +9,7 @@ import msgspec
 
 from base_station.engine.console_recorder import KEYFRAME_NS
 from base_station.replay.playback import ReadLog
-from base_station.replay.unrecorded import LONGEST_NS, RecordGap
+from base_station.replay.record_gaps import LONGEST_NS, RecordGap
 from base_station.views.recorded import RecordedDelta, read_snapshot
 from base_station.views.wire import Snapshot, Trail
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, TRAIL_TOPIC

@@ -17,7 +17,7 @@ import msgspec
 from base_station.core.checkpoint import Checkpoint, read_checkpoint
 from base_station.core.events import Output, Received, StationEvent, event_of, is_decision
 from base_station.core.pipeline import StationPipeline
-from base_station.replay.unrecorded import LONGEST_NS, RecordGap, UnrecordedTime
+from base_station.replay.record_gaps import LONGEST_NS, RecordGap, UnrecordedTime
 from base_station.storage.checkpoints import Checkpoints, SavedState
 from shared.codec import encode
 from shared.coded_text import NO_CODE
@@ -46,7 +46,8 @@ class Archive:
     watch: Watch = lambda: lambda: False
     own: Checkpoints | None = None  # where a playback saves the states that it comes by
     flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
-    look: Callable[[], bool] = lambda: False  # a little more for flaws; False: all is looked at
+    # Checks a little more of the log for defects; False: all of it is checked.
+    check_next_chunk: Callable[[], bool] = lambda: False
     note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found
     console: ReadLog | None = None  # what consoles were shown; None: it is decided again
     has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from base_station.engine.ports import Trails
-from base_station.replay.unrecorded import RecordGap
+from base_station.replay.record_gaps import RecordGap
 from base_station.views.wire import ReplayView, Snapshot
 
 

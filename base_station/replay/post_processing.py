@@ -238,7 +238,7 @@ class PostProcessor:
 
     def _flaws(self) -> tuple[str, ...]:
         """Flaws of the log: reasons why the result may be incomplete."""
-        while self._archive.look():
+        while self._archive.check_next_chunk():
             pass
         return tuple(self._archive.flaws())
 

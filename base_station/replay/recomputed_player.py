@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import LiveSink, Trails
 from base_station.replay.playback import Archive, Playback
-from base_station.replay.unrecorded import RecordGap
+from base_station.replay.record_gaps import RecordGap
 from base_station.replay.version_check import VersionCheck
 from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import ReplayView, Snapshot

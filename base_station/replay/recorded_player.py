@@ -11,8 +11,8 @@ from base_station.engine.console_recorder import KEYFRAME_NS
 from base_station.engine.ports import LiveSink, Trails
 from base_station.replay.console_recording import ConsoleRecording, Frame
 from base_station.replay.playback import ReadLog
+from base_station.replay.record_gaps import LONGEST_NS, RecordGap
 from base_station.replay.recorded_picture import RecordedPicture
-from base_station.replay.unrecorded import LONGEST_NS, RecordGap
 from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS

@@ -14,8 +14,8 @@ from base_station.replay.incident_sink import IncidentSink
 from base_station.replay.playback import Archive
 from base_station.replay.player import Player
 from base_station.replay.recomputed_player import RecomputedPlayer
+from base_station.replay.record_gaps import RecordGap
 from base_station.replay.recorded_player import RecordedPlayer
-from base_station.replay.unrecorded import RecordGap
 from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import GapView, ReplayView, Snapshot
@@ -26,7 +26,7 @@ from shared.log_on_change import LogOnChange
 
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
-LOOK_NS = 20 * NS_PER_MS  # of each turn goes into looking at the log for flaws
+CHECK_NS = 20 * NS_PER_MS  # of each turn, for the check of the log for flaws
 WHOLE_NS = NS_PER_S  # live, consoles receive the station's health and backfilled trails as often
 GRACE_S = 2.0  # for its thread to end
 PAUSED_S = 1.0  # a console that receives nothing for longer believes its link dead
@@ -71,7 +71,7 @@ class ReplaySession:
         self._clock = clock
         self._archive = archive
         self._was_changed: Callable[[], bool]
-        self._looking = LogOnChange(_log, "what the log lacks cannot be seen")
+        self._checking = LogOnChange(_log, "what the log lacks cannot be seen")
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
         self._sink, self._people = IncidentSink(sink, window.incident_id), people
         self._player: Player  # that is shown
@@ -199,9 +199,9 @@ class ReplaySession:
             if self._seek_ns is not None:
                 continue  # a picture now would be of another time than asked for
             self._answer()
-            looks = self._look_for_flaws()
+            has_more = self._check_log()
             if not self._is_behind:
-                self._news.wait(DELTA_S if self._playing or looks else PAUSED_S)
+                self._news.wait(DELTA_S if self._playing or has_more else PAUSED_S)
             self._news.clear()
 
     def _stop_for_archive(self, error: ArchiveError) -> None:
@@ -212,29 +212,32 @@ class ReplaySession:
             raise error
         _log.warning("the replay of %s stands still: %s", self._window.incident_id, error)
         shown = self._player
-        self._open()  # who reads where the reading failed finds the end
+        self._open()  # a reader that failed would take the place of its failure for the end
         self._player = shown
         with self._lock:
             self._away, self._playing, self._seeking = str(error), False, False
         self._publish()
 
-    def _look_for_flaws(self) -> bool:
-        """For a moment, for a seek passes over most of the log; whether more is to be looked at."""
-        until_ns = self._clock.monotonic_ns() + LOOK_NS
-        looks = True
-        with self._looking:
-            while looks and self._clock.monotonic_ns() < until_ns:
-                looks = self._checks_version() or self._archive.look()
-        return looks
+    def _check_log(self) -> bool:
+        """Check the log for ``CHECK_NS`` at most; True if there is more to check.
+
+        A seek passes over most of the log: playing alone would not find all of its flaws.
+        """
+        until_ns = self._clock.monotonic_ns() + CHECK_NS
+        has_more = True
+        with self._checking:
+            while has_more and self._clock.monotonic_ns() < until_ns:
+                has_more = self._checks_version() or self._archive.check_next_chunk()
+        return has_more
 
     def _checks_version(self) -> bool:
-        """A record more; False: the check is over, or too much is missing for it."""
+        """Check one more record; False: the check is over, or too much is missing for it."""
         if self._recomputed is None:
             return False  # the decisions of that time are played
         if self._version_check is None:
-            self._archive.look()  # at its files
+            self._archive.check_next_chunk()  # its first call checks the list of files
             self._version_check = self._recomputed.version_check(self._window.end_ns)
-        differs = None if self._archive.flaws() else self._version_check.look()
+        differs = None if self._archive.flaws() else self._version_check.check_next_record()
         if differs:
             self._archive.note(DIFFERS)
         return differs is False

@@ -41,9 +41,9 @@ class VersionCheck:
         self._until_ns = until_ns
         self._found: Iterator[bool] | None = None
 
-    def look(self) -> bool | None:
-        """At the next record: whether it is decided otherwise now; None: there is none, or it
-        cannot be looked at now.
+    def check_next_record(self) -> bool | None:
+        """True if the pipeline decides otherwise at the next record than it did live; None: there
+        is no record, or it cannot be read now.
         """
         if self._found is None:
             self._found = self._begin()

@@ -92,14 +92,14 @@ def _facts(report: ReportContents) -> Iterable[tuple[str, str]]:
     yield texts.INCIDENT, f"{report.name} ({report.incident_id})"
     if report.dispatch:
         yield texts.DISPATCH, report.dispatch
-    yield texts.OPENED, texts.when_and_by(during.from_ns, report.opened_by)
+    yield texts.OPENED, texts.time_and_author(during.from_ns, report.opened_by)
     if report.is_open:
         yield texts.CLOSED, texts.STILL_OPEN
     else:
-        yield texts.CLOSED, texts.when_and_by(during.until_ns, report.closed_by)
+        yield texts.CLOSED, texts.time_and_author(during.until_ns, report.closed_by)
     yield texts.LASTED, texts.duration(during.seconds)
     yield texts.PEOPLE, str(len(people))
-    yield texts.ALARMS, texts.alarms_of_which(report.alarms, urgent)
+    yield texts.ALARMS, texts.alarm_count_text(report.alarms, urgent)
     yield texts.ORDERS, str(len(report.orders))
     yield texts.RADIO_GAPS, str(sum(len(one.radio_gaps) for one in report.people))
     yield texts.RECORD, str(len(report.defects)) if report.defects else texts.NONE
@@ -272,7 +272,7 @@ def _imports(report: ReportContents) -> Markup:
             one.format,
             texts.from_to(one.during.from_ns, one.during.until_ns),
             f"{one.shift_s:g}",
-            texts.when_and_by(one.t_ns, one.by),
+            texts.time_and_author(one.t_ns, one.by),
             one.sha256,
         )
         for one in report.imports

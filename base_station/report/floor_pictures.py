@@ -108,9 +108,9 @@ def _frame(lines: Sequence[Line], width: float, most_height: float) -> _Frame:
 
 def _trail(frame: _Frame, person: PersonEntry, trail: FloorTrail) -> Iterable[Markup]:
     colour = COLOURS[(person.number - 1) % len(COLOURS)]
-    for lines, look in ((trail.in_contact, TRAIL), (trail.radio_gap, GAP)):
+    for lines, style in ((trail.in_contact, TRAIL), (trail.radio_gap, GAP)):
         if lines:
-            yield element("path", d=frame.path(lines), stroke=colour, **look)
+            yield element("path", d=frame.path(lines), stroke=colour, **style)
 
 
 def _ends(

@@ -149,7 +149,7 @@ def counted(count: int, one: str, many: str) -> str:
     return f"{count} {one if count == 1 else many}"
 
 
-def when_and_by(t_ns: int, by: str) -> str:
+def time_and_author(t_ns: int, by: str) -> str:
     return f"{date_and_time(t_ns)} by {by}"
 
 
@@ -159,7 +159,7 @@ def from_to(from_ns: int, until_ns: int) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-def alarms_of_which(alarms: int, urgent: int) -> str:
+def alarm_count_text(alarms: int, urgent: int) -> str:
     return f"{alarms}, raised as urgent {counted(urgent, 'time', 'times')}"
 
 
@@ -236,7 +236,7 @@ def place_in_words(lat_deg: float, lon_deg: float) -> str:
 
 def photograph_caption(entry: PhotoEntry) -> str:
     place = UNKNOWN if entry.place is None else place_in_words(*entry.place)
-    brought_in = when_and_by(entry.t_ns, entry.by)
+    brought_in = time_and_author(entry.t_ns, entry.by)
     return f"Taken {date_and_time(entry.taken_ns)} at {place}. Brought in {brought_in}."
 
 

@@ -79,7 +79,7 @@ def _strip(
         return top + _STRIP - 4.0 - (value - low) / (high - low) * (_STRIP - 8.0)
 
     legend = ", ".join(
-        f"{text} (dashed)" if look is _DASHED else text for text, look, _ in lines
+        f"{text} (dashed)" if style is _DASHED else text for text, style, _ in lines
     ) + ("; dotted: then" if then is not None else "")
     content = [
         element("rect", x=_LEFT, y=top, width=_INNER, height=_STRIP, **STRIP),
@@ -95,14 +95,14 @@ def _strip(
     ]
     if then is not None:
         content.append(element("path", d=f"M{_LEFT:.1f} {y_of(then):.1f}h{_INNER:.1f}", **LIMIT))
-    for _, look, get in lines:
+    for _, style, get in lines:
         placed = [
             f"{x_of(value):.1f} {y_of(figure):.1f}"
             for value, one in zip(values, figures, strict=True)
             if (figure := get(one)) is not None
         ]
         if placed:
-            content.append(element("path", d="M" + "L".join(placed), **look))
+            content.append(element("path", d="M" + "L".join(placed), **style))
             content += [
                 element("circle", cx=place.split()[0], cy=place.split()[1], r=1.8)
                 for place in placed

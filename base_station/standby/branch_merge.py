@@ -97,8 +97,9 @@ class BranchMerge:
         self._settled = settled
         self._other = other
 
-    def look(self, stop: Event) -> None:
-        """One round; ``stop`` ends it early, and the next one begins the part again.
+    def run_round(self, stop: Event) -> None:
+        """Merge all branches of the standby; ``stop`` ends it early, and the next round begins the
+        unfinished branch again.
 
         Raises MusterError where the other station's answer makes no sense.
         """

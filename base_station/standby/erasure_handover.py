@@ -60,9 +60,9 @@ class ErasureHandover:
         self._take = take
         self._taken: set[str] = set()  # by request or order
 
-    def look(self, _stop: Event) -> None:
-        """One round.  Raises MusterError where a store fails, or the other station's answer makes
-        no sense.
+    def run_round(self, _stop: Event) -> None:
+        """Take over each new request and order.  Raises MusterError where a store fails,
+        or the other station's answer makes no sense.
         """
         if not self._leads():
             return

@@ -38,7 +38,7 @@ from shared.worker import Worker
 
 logger = logging.getLogger(__name__)
 
-_LOOK_EVERY_S = 0.2
+_POLL_INTERVAL_S = 0.2
 _STEP_S = 5.0  # that the drive may take for the delivered events
 
 
@@ -82,10 +82,10 @@ class HaController:
         self._token = around.bus.declare_alive(key_of(config.name, "alive"))
         self._worker = Worker(
             "pair",
-            self._look,
+            self._update,
             "the standby's thread failed; it goes on",
-            retry_s=_LOOK_EVERY_S,
-            first_after_s=_LOOK_EVERY_S,
+            retry_s=_POLL_INTERVAL_S,
+            first_after_s=_POLL_INTERVAL_S,
         )
 
     def start(self) -> None:
@@ -178,12 +178,12 @@ class HaController:
 
     # ---- in the thread
 
-    def _look(self) -> float:
+    def _update(self) -> float:
         by_hand = self._by_hand.is_set()
         self._by_hand.clear()
         if not self._ends:
             self._decide(by_hand=by_hand)
-        return _LOOK_EVERY_S
+        return _POLL_INTERVAL_S
 
     def _decide(self, *, by_hand: bool) -> None:
         now_ns = self._around.clock.monotonic_ns()

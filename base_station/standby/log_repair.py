@@ -76,15 +76,15 @@ class LogRepair:
         self._tries: Counter[Path] = Counter()
         self._without_events: set[Path] = set()  # nothing that the other one has is missing in them
 
-    def look(self, stop: Event) -> None:
-        """One round; ``stop`` ends it early.  Raises MusterError where that cannot be done."""
+    def run_round(self, stop: Event) -> None:
+        """Repair one damaged segment; ``stop`` ends it early.  Raises MusterError on failure."""
         damaged = {one for one in self._check.damaged if one not in self._without_events}
         station = self._other()
         if not damaged or station is None:
             return
         paths, _ = own_segments(self._files.folder)
-        # Where one begins is known by the one before it.  One that cannot be mended keeps no other
-        # from it.
+        # The start of a segment is known from the one before it.  The segment with the fewest tries
+        # is repaired first, so that one that cannot be repaired does not block the others.
         known = {one for before, one in pairwise([None, *paths]) if before not in damaged}
         path = min(damaged & known, key=lambda one: (self._tries[one], one), default=None)
         if path is None:
@@ -123,13 +123,13 @@ class LogRepair:
 
 
 class MissingRecordMerger:
-    """Called with each record that is left of a segment, gives it with the events that stood
-    before it; ``rest`` those behind the last one.
+    """Called with each remaining record of a segment, returns it preceded by the events that are
+    missing before it; ``rest`` returns those after the last one.
     """
 
     def __init__(self, theirs: Iterator[Record], behind: Record) -> None:
-        """``theirs``: the other log's events from where the segment begins; ``behind``: the first
-        one that does not belong to it.
+        """``theirs``: the other log's events from the start of the segment; ``behind``: the first
+        event after its end.
         """
         self._theirs = theirs
         self._behind = behind

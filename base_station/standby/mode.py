@@ -233,16 +233,19 @@ class Paired:
         threads = (
             pair,
             Worker.periodic(
-                "replication", 1.0, copying.look, "the other station's accounts are not copied"
+                "replication", 1.0, copying.run_round, "the other station's accounts are not copied"
             ),
             Worker.periodic(
-                "erasures", 2.0, handover.look, "erasures of the other one are not ordered again"
+                "erasures",
+                2.0,
+                handover.run_round,
+                "erasures of the other one are not ordered again",
             ),
             Worker.periodic(
-                "mending", 5.0, mending.look, "the log is not mended from the other station"
+                "mending", 5.0, mending.run_round, "the log is not mended from the other station"
             ),
             Worker.periodic(
-                "merging", 2.0, merging.look, "what the other one set aside is not taken"
+                "merging", 2.0, merging.run_round, "what the other one set aside is not taken"
             ),
         )
         for thread in threads:

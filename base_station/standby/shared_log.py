@@ -54,8 +54,8 @@ class SharedLog:
         return self._log.problem
 
     @property
-    def little_room(self) -> str:
-        return self._log.little_room
+    def low_disk_space(self) -> str:
+        return self._log.low_disk_space
 
     @property
     def is_behind(self) -> bool:
@@ -134,7 +134,7 @@ class SharedLog:
         with self._changed:
             return self._changed.wait_for(lambda: self._offered >= place, timeout_s)
 
-    def behind(self, place: LogPosition, most_bytes: int) -> list[Record] | None:
+    def behind(self, place: LogPosition, max_bytes: int) -> list[Record] | None:
         """The events behind ``place``, as many as that; None: they are no longer at hand."""
         with self._changed:
             if place < self._first:
@@ -142,8 +142,8 @@ class SharedLog:
             found: list[Record] = []
             for record in self._recent[bisect_right(self._places, place) :]:
                 found.append(record)
-                most_bytes -= len(record[2])
-                if most_bytes <= 0:
+                max_bytes -= len(record[2])
+                if max_bytes <= 0:
                     break
             return found
 

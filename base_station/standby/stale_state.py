@@ -24,7 +24,7 @@ class StaleState:
         """A segment that ends there is whole again."""
         self.is_stale = self.is_stale or self._from_ns < end_ns <= self._to_ns
 
-    def can_be_made_good(self, *, leads: bool, spared: bool, in_incident: bool) -> bool:
+    def can_recover(self, *, leads: bool, spared: bool, in_incident: bool) -> bool:
         """True if to start again and step it: a standby at once, one that leads when the other
         can take over (``spared``) and no incident is open.
         """

@@ -120,8 +120,10 @@ class TableReplication:
         self._audit_number = 0  # up to which the other station's audit is here
         self._audit_run = 0  # of its program, in which that was counted
 
-    def look(self, stop: Event) -> None:
-        """One round; ``stop`` ends it early.  Raises MusterError where the bus or a store fails."""
+    def run_round(self, stop: Event) -> None:
+        """Exchange changed rows with the other station; ``stop`` ends it early.  Raises
+        MusterError where the bus or a store fails.
+        """
         leader, other = self._leader(), self._other()
         if leader is not None:
             self._copy(leader, stop)
@@ -161,7 +163,7 @@ class TableReplication:
         back = self._tables.restore_lost_rows(rows)
         if back:
             self._on_restored_rows(f"back from the other station: {', '.join(back)}")
-        taken_away, photos = self._tables.take_away(rows), self._copy_photos(other, stop)
+        taken_away, photos = self._tables.apply_removals(rows), self._copy_photos(other, stop)
         if back or taken_away or photos:
             self._on_people()
         self._standby_digest = _hash(rows_bytes)

@@ -44,8 +44,8 @@ class IntegrityChecker:
         self._lacks: dict[str, LogGap] = {}  # by name: found as the station started
         self._foreign: dict[Path, str] = {}  # files that are no segments, with the reason
 
-    def look(self, segments: Iterable[SegmentInfo]) -> None:
-        """At one more of them: reading a long log is to hold up nothing."""
+    def check_next_segment(self, segments: Iterable[SegmentInfo]) -> None:
+        """Check one more segment: the check of a long log must not delay other work."""
         segments = tuple(segments)
         with self._lock:
             self._missing = tuple(missing_segments(one.path for one in segments))

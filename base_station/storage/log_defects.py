@@ -47,12 +47,12 @@ class LogDefects:
         self._segments: list[SegmentInfo] | None = None
         self._search = self._searches()
 
-    def look(self) -> bool:
-        """At a chunk of the log more; False: all of it was looked at."""
+    def check_next_chunk(self) -> bool:
+        """Check one more chunk of the log; False: all of it is checked."""
         return next(self._search, None) is not None
 
     def note(self, flaw: str) -> bool:
-        """Each once, however often a reader comes by it; whether it is new."""
+        """Report a flaw once, however often a reader meets it; True if it is new."""
         if flaw in self._found:
             return False
         self._found = (*self._found, flaw)
@@ -70,8 +70,8 @@ class LogDefects:
     def __call__(self) -> Sequence[str]:
         return self._found
 
-    def look_at_files(self) -> list[SegmentInfo]:
-        """At all of them, not into them."""
+    def check_files(self) -> list[SegmentInfo]:
+        """Check the list of files and how each ends; their content is not read."""
         if self._segments is None:
             own, foreign = own_segments(self._log)
             for path, reason in foreign.items():
@@ -79,24 +79,24 @@ class LogDefects:
             written = own[-1:] if self._is_written else []
             self._segments = [_info_of(path) for path in own if path not in written]
             lacks = log_gaps(
-                [*self._segments, *map(being_written, written)],
+                [*self._segments, *map(open_segment_info, written)],
                 [one for one in self._known if not self._is_behind(one.first_ns)],
             )
             for flaw in _in_words([one for one in lacks if not self._is_behind(one.from_ns)]):
                 self.note(flaw)
             for segment in self._segments:
-                self._look_at_end(segment)
+                self._check_end(segment)
         return self._segments
 
     def _is_behind(self, t_ns: int) -> bool:
         return self._until_ns is not None and t_ns > self._until_ns
 
     def _searches(self) -> Iterator[bool]:
-        for segment in self.look_at_files():
+        for segment in self.check_files():
             if segment.end_ns >= self._from_ns and not self._is_behind(segment.start_ns):
-                yield from self._look_into(segment)
+                yield from self._check_content(segment)
 
-    def _look_at_end(self, segment: SegmentInfo) -> None:
+    def _check_end(self, segment: SegmentInfo) -> None:
         if segment.state is SegmentState.CLOSED:
             return
         with SegmentReader(segment.path) as reader:
@@ -108,7 +108,7 @@ class LogDefects:
                     "bytes cannot be read"
                 )
 
-    def _look_into(self, segment: SegmentInfo) -> Iterator[bool]:
+    def _check_content(self, segment: SegmentInfo) -> Iterator[bool]:
         try:
             with SegmentReader(segment.path) as reader:
                 for _ in reader.intact_chunks():
@@ -124,7 +124,7 @@ def _info_of(path: Path) -> SegmentInfo:
         return reader.info()
 
 
-def being_written(path: Path) -> SegmentInfo:
+def open_segment_info(path: Path) -> SegmentInfo:
     """A segment that is not opened: to count its records is to read it."""
     began_ns = segment_began_ns(path)
     return SegmentInfo(path, SegmentState.OPEN, began_ns, began_ns, sys.maxsize, 0)

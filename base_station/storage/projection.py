@@ -53,7 +53,7 @@ class ProjectedTables(Protocol):
         """
         ...
 
-    def hasten(self) -> Callable[[], bool]:
+    def flush_soon(self) -> Callable[[], bool]:
         """Have decisions before this call written now, without waiting.  Gives a function: True if
         that is over: they are in the tables, or the database does not take them.
         """
@@ -66,5 +66,5 @@ class FinishedTables:
     def flush(self) -> bool:
         return True
 
-    def hasten(self) -> Callable[[], bool]:
+    def flush_soon(self) -> Callable[[], bool]:
         return self.flush

@@ -40,7 +40,7 @@ LOG_FOLDER = "log"
 _TURN_S = 0.05
 _LONGEST_WAIT_S = 2.0  # for the disk, by the writer of an urgent record
 _HUNG_WAIT_S = 0.2  # as long as a disk takes that has just come back
-_LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
+_DISK_CHECK_INTERVAL_NS = 5 * NS_PER_S
 _STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, or hangs
 _HANGS_NS = 5 * NS_PER_S  # it hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
@@ -63,9 +63,9 @@ def _share_of(key: str) -> float:
     return _ALERTS_SHARE if channel.qos is Qos.ALERT else 1.0
 
 
-def _mended(folder: Path) -> tuple[Recovery, ...]:
-    """A disk that takes nothing keeps no station from its start: what is torn can be read all the
-    same, and is mended at a start when there is room.  Raises LogError.
+def _recover(folder: Path) -> tuple[Recovery, ...]:
+    """Recover the segments.  A full or read-only disk does not prevent the start: a torn segment
+    stays readable, and is recovered at a later start.  Raises LogError.
     """
     try:
         return tuple(recover_log(folder))
@@ -115,7 +115,7 @@ class Recorder:
         self._lock = FolderLock(data)
         with ExitStack() as undo:
             undo.callback(self._lock.close)
-            self.recoveries: tuple[Recovery, ...] = _mended(self.folder)
+            self.recoveries: tuple[Recovery, ...] = _recover(self.folder)
             self._segments = self._look_up_segments()
             # Taken records are kept: this recorder refuses, so that the writer never has to.
             patient = replace(policy, waiting_bytes_max=sys.maxsize)
@@ -134,7 +134,7 @@ class Recorder:
         self._refused = 0
         self._refused_from_ns = self._refused_until_ns = 0
         self._failure: str = ""
-        self._turned_ns = self._received_ns = self._looked_ns = clock.monotonic_ns()
+        self._turned_ns = self._received_ns = self._disk_checked_ns = clock.monotonic_ns()
         self._last_t_ns = 0  # log time of the last record
         self._taken = 0
         self._disk_free_bytes = shutil.disk_usage(self.folder).free
@@ -223,7 +223,7 @@ class Recorder:
         return join_texts((missing, hangs if self.hangs else self._writer.problem))
 
     @property
-    def little_room(self) -> str:
+    def low_disk_space(self) -> str:
         """That the disk will soon take nothing, as a sentence for a person; empty: it will."""
         if self._disk_free_bytes >= _LITTLE_FREE_BYTES:
             return ""
@@ -246,7 +246,7 @@ class Recorder:
         return self._turn_ns > _HANGS_NS and not self._failure
 
     @property
-    def not_kept(self) -> str:
+    def unsaved_loss(self) -> str:
         """Loss if the station ended now, as a sentence for a person; empty: the disk answers, and
         has everything soon.
         """
@@ -361,8 +361,8 @@ class Recorder:
         self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
         if self._writer.is_on_disk:
             self._on_disk = self._taken
-        if now_ns - self._looked_ns >= _LOOK_AT_DISK_EVERY_NS:
-            self._looked_ns = now_ns
+        if now_ns - self._disk_checked_ns >= _DISK_CHECK_INTERVAL_NS:
+            self._disk_checked_ns = now_ns
             with suppress(OSError):  # a failing disk is reported by the writer
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
 

@@ -19,7 +19,7 @@ from shared.errors import UserError
 
 _log = logging.getLogger(__name__)
 ANSWERED_WITHIN_S = 60.0  # the station looks every few seconds
-_LOOK_EVERY_S = 0.2
+_POLL_INTERVAL_S = 0.2
 
 
 class FolderRequest(msgspec.Struct, frozen=True):
@@ -74,7 +74,7 @@ class RequestFiles(Generic[RequestT, AnswerT]):
             if time.monotonic() > end_s:
                 self._request_file.unlink(missing_ok=True)
                 raise UserError("the station that runs on this folder does not answer; try again")
-            time.sleep(_LOOK_EVERY_S)
+            time.sleep(_POLL_INTERVAL_S)
         self._answer_file.unlink(missing_ok=True)
         if answer.refusal:
             raise UserError(answer.refusal)

@@ -222,8 +222,8 @@ class Backfill:
         with self._lock:
             self._ended_ns[request.unit_id] = self._clock.monotonic_ns()
             self._came_bytes[request.unit_id] += len(reply or b"")
-            most_bytes = max(_LEAST_KEPT_BYTES, _MOST_CAME * request.question.most_bytes)
-            if reply is not None and self._came_bytes[request.unit_id] > most_bytes:
+            max_bytes = max(_LEAST_KEPT_BYTES, _MOST_CAME * request.question.max_bytes)
+            if reply is not None and self._came_bytes[request.unit_id] > max_bytes:
                 return  # far more than was asked for
             (self._urgent if request.question.urgent else self._replies).append((request, reply))
         self._worker.wake()

@@ -30,7 +30,7 @@ from shared.worker import UNTIL_WOKEN, Worker
 logger = logging.getLogger(__name__)
 
 _AGAIN_AFTER_NS = 2 * NS_PER_S  # a reply takes a second on a bad link
-_LOOK_EVERY_S = 0.2  # whether a unit is back
+_POLL_INTERVAL_S = 0.2  # whether a unit is back
 _COMMANDS = f"/{COMMAND.suffix}"
 
 Offer = Callable[[str, bytes], None]  # takes key and payload
@@ -89,7 +89,7 @@ class CommandSender:
     def _step(self) -> float:
         orders = self._orders
         self.send_due(orders)
-        return _LOOK_EVERY_S if orders else UNTIL_WOKEN
+        return _POLL_INTERVAL_S if orders else UNTIL_WOKEN
 
     def send_due(self, orders: Sequence[Order]) -> None:
         """Send all that are due; one that cannot be sent does not hold up the others."""

@@ -50,7 +50,7 @@ class Question(NamedTuple):
     urgent: bool = False
 
     @property
-    def most_bytes(self) -> int:
+    def max_bytes(self) -> int:
         """Limit of the bytes of messages that it asks for."""
         return dict(self.parameters).get("total", 0)
 

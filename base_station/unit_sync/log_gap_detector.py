@@ -49,8 +49,8 @@ class LogGapDetector:
         self._take_back = take_back
         self._search = self._searches()
 
-    def look(self) -> None:
-        """For a moment."""
+    def search_further(self) -> None:
+        """Continue the search for a moment."""
         next(self._search)
 
     def _searches(self) -> Iterator[None]:

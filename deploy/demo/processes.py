@@ -15,7 +15,7 @@ from typing import Self
 from shared.errors import UserError
 
 _PATIENCE_S = 10.0
-_LOOK_EVERY_S = 0.05
+_POLL_INTERVAL_S = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Children:
         """Run ``muster ARGUMENTS`` to its end; what it printed.  UserError where it fails."""
         child = self.start(name, arguments)
         while child.exit_code is None:
-            self.wait(_LOOK_EVERY_S)
+            self.wait(_POLL_INTERVAL_S)
         self._children.remove(child)
         if child.exit_code != 0:
             raise UserError(f"`muster {' '.join(arguments)}` failed:\n{child.last_words()}")
@@ -105,7 +105,7 @@ class Children:
                     return line
             if child.exit_code is not None:
                 raise UserError(f"{child.name} ended before it was ready:\n{child.last_words()}")
-            self.wait(_LOOK_EVERY_S)
+            self.wait(_POLL_INTERVAL_S)
         raise UserError(
             f"{child.name} was not ready within {patience_s:g} s; it printed:\n{child.last_words()}"
         )

@@ -183,10 +183,10 @@ class _Demo:
             complete_s = _ARRIVAL_S if self._complete_s is None else self._complete_s
             if for_s is not None and elapsed_s >= complete_s + for_s:
                 break
-            self._look(console, elapsed_s)
+            self._run_once(console, elapsed_s)
         self._screen.print()
 
-    def _look(self, console: ConsoleClient, elapsed_s: float) -> None:
+    def _run_once(self, console: ConsoleClient, elapsed_s: float) -> None:
         for child in self._unmourned():
             self._mourned.append(child)
             self._mourn(child, console)

@@ -13,7 +13,7 @@ from deploy.demo.processes import Child, Children
 from shared.errors import UserError
 
 _PATIENCE_S = 60.0
-_LOOK_EVERY_S = 0.2
+_POLL_INTERVAL_S = 0.2
 _ANSWER_S = 2.0
 
 
@@ -85,7 +85,7 @@ class Stations:
             for site in self.sites:
                 if self._running[site.name].exit_code is None and _leads(site):
                     return site
-            self._children.wait(_LOOK_EVERY_S)
+            self._children.wait(_POLL_INTERVAL_S)
         raise UserError(f"no station leads; see {self._folder / 'output'}")
 
     def alive(self) -> tuple[Site, ...]:

@@ -42,7 +42,7 @@ class StationConnector(Protocol):
         """Return True as soon as the station takes a connection; False when the time is over."""
         ...
 
-    def why_no_link(self) -> str:
+    def link_failure_reason(self) -> str:
         """Return the reason for a person when a bus stays without a link; may take some seconds."""
         ...
 
@@ -184,7 +184,7 @@ class Link:
             Thread(target=self._report_reason, args=(bus is not None,), daemon=True).start()
 
     def _report_reason(self, is_linked: bool) -> None:
-        reason = _NO_SUBSCRIBER if is_linked else self._station.why_no_link()
+        reason = _NO_SUBSCRIBER if is_linked else self._station.link_failure_reason()
         if self._reported_linked is False:
             logger.warning("no link: %s; messages are kept and sent later", reason)
 

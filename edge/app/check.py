@@ -11,7 +11,7 @@ from rich.console import Console
 
 from edge.agent.source_reader import SourceReader
 from edge.app.fitted_sensors import fitted_sensors
-from edge.app.opened_sources import gives_of, open_sources
+from edge.app.opened_sources import open_sources, provided_quantities
 from edge.app.run import open_auxiliaries
 from edge.app.zenoh_station import ZenohStation
 from edge.config import EdgeConfig
@@ -73,7 +73,7 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[CheckFinding]:
 def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Iterator[CheckFinding]:
     reader = SourceReader(source, SystemClock(), config.speed, open_auxiliaries(config))
     inertial = {name: InertialSurvey(one, name) for name, one in sensors_in(source).items()}
-    auxiliary = AuxiliarySurvey(config, gives_of(config))
+    auxiliary = AuxiliarySurvey(config, provided_quantities(config))
     faults: list[str] = []
     reader.start()
     try:

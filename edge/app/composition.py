@@ -24,7 +24,7 @@ from edge.agent.runtime import Agent, AgentParts
 from edge.agent.source_reader import SourceReader
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.app.fitted_sensors import fitted_sensors
-from edge.app.opened_sources import gives_of
+from edge.app.opened_sources import provided_quantities
 from edge.app.tracking import Tracking, tracking_of
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
@@ -146,7 +146,7 @@ def _start_check(
         yield from storage_findings(folder, config.storage)
 
     described = {one.name: one.description for one in sensors}
-    return StartCheck(config, described, gives_of(config), installation)
+    return StartCheck(config, described, provided_quantities(config), installation)
 
 
 def _timekeepers(source: Source) -> Callable[[], Timekeeper] | None:

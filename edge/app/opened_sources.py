@@ -17,7 +17,7 @@ def open_sources(config: EdgeConfig) -> Source:
     )
 
 
-def gives_of(config: EdgeConfig) -> frozenset[Quantity]:
+def provided_quantities(config: EdgeConfig) -> frozenset[Quantity]:
     """Return what the sources may give at most.  Raises ConfigError."""
     texts = [config.source] if config.source else [sensor.source for sensor in config.sensors]
     return frozenset().union(*(source_kind(text).gives for text in texts))

@@ -64,10 +64,10 @@ class ZenohStation:
             self._search()
         return self._is_probed
 
-    def why_no_link(self) -> str:
-        from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load
+    def link_failure_reason(self) -> str:
+        from shared.link_diagnosis import link_failure_reason  # noqa: PLC0415  # slow to load
 
-        return why_no_link(self._connect, self._member.identity, datetime.now(UTC))
+        return link_failure_reason(self._connect, self._member.identity, datetime.now(UTC))
 
     def _search(self) -> None:
         """Take over the addresses of the stations that are announced now.  The addresses in the

@@ -62,7 +62,7 @@ class StartCheck:
         self._left: list[CheckFinding] | None = None  # None: the survey goes on
         self._due_ns: int | None = None  # when it looks next; None: not started, or given up
         self._error: Exception | None = None
-        self._thread = Thread(target=self._look_at_disk, name="start-check", daemon=True)
+        self._thread = Thread(target=self._check_installation, name="start-check", daemon=True)
 
     def start(self, mono_ns: int) -> None:
         self._due_ns = mono_ns + round(SURVEY_S * NS_PER_S)
@@ -86,7 +86,7 @@ class StartCheck:
             return None
         self._due_ns = mono_ns + _AGAIN_NS
         try:
-            return self._look()
+            return self._open_findings()
         except Exception as error:  # the unit goes on without its check
             logger.exception("the check at the start has failed")
             self._due_ns = None
@@ -96,7 +96,7 @@ class StartCheck:
             about = subject("start_check", "check at the start")
             return _as_message([CheckFinding(about, Severity.WARNING, text)])
 
-    def _look(self) -> tuple[PreflightFinding, ...] | None:
+    def _open_findings(self) -> tuple[PreflightFinding, ...] | None:
         if self._error is not None:
             raise self._error
         if self._inertial is not None:
@@ -126,7 +126,7 @@ class StartCheck:
         if not self._has_output:
             yield NO_OUTPUT
 
-    def _look_at_disk(self) -> None:
+    def _check_installation(self) -> None:
         try:
             self._of_disk = list(self._installation())
         except Exception as error:  # a unit must start in any case

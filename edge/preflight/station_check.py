@@ -38,7 +38,7 @@ def station_findings(
     try:
         began_s = time.monotonic()
         if not _wait_for_subscriber(bus, HEARTBEAT.key(unit_id)):
-            yield CheckFinding("link", Severity.FAILED, station.why_no_link(), _NO_LINK)
+            yield CheckFinding("link", Severity.FAILED, station.link_failure_reason(), _NO_LINK)
             return
         yield CheckFinding("link", Severity.OK, f"linked within {time.monotonic() - began_s:.1f} s")
         yield _clock_finding(unit_id, bus, machine)

@@ -14,12 +14,11 @@ from shared.mcap_log.folder import (
     segment_paths,
     segments_within,
 )
-from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
+from shared.mcap_log.foreign_files import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
 from shared.mcap_log.identity import SegmentIdentity, identity_of
-from shared.mcap_log.one_log import log_id_of, segments_of_one_log
+from shared.mcap_log.log_membership import log_id_of, segments_of_one_log
 from shared.mcap_log.ranged_file import FetchRange, RangedSegmentFile
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
-from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment, write_segment_like
 from shared.mcap_log.schemas import (
@@ -36,6 +35,7 @@ from shared.mcap_log.schemas import (
     log_topic,
     wire_type_of,
 )
+from shared.mcap_log.segment_rebuild import RebuiltSegment
 from shared.mcap_log.tail import LogTail
 from shared.mcap_log.writing import (
     Segment,

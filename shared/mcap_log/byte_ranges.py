@@ -8,7 +8,7 @@ from pathlib import Path
 
 from shared.errors import LogError
 from shared.mcap_log.container import FOOTER_BYTES, RECORD
-from shared.mcap_log.contents import contents_of
+from shared.mcap_log.segment_contents import contents_of
 from shared.mcap_log.segment_file import SegmentFile
 
 

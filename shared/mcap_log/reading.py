@@ -18,11 +18,11 @@ from shared.mcap_log.container import (
     message_offsets,
     unpacked,
 )
-from shared.mcap_log.contents import Chunk, contents_of
 from shared.mcap_log.folder import segments_within
-from shared.mcap_log.foreign import candidates, foreign_by_content, foreign_in_words
+from shared.mcap_log.foreign_files import candidates, foreign_by_content, foreign_in_words
 from shared.mcap_log.identity import identity_of
 from shared.mcap_log.schemas import DERIVED
+from shared.mcap_log.segment_contents import Chunk, contents_of
 from shared.mcap_log.segment_file import SegmentFile
 from shared.mcap_log.writing import SegmentInfo, SegmentState
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from shared.durable_names import sync_folder
 from shared.errors import LogError
 from shared.mcap_log.folder import segment_number, segment_paths
-from shared.mcap_log.foreign import identity_in_log
+from shared.mcap_log.foreign_files import identity_in_log
 from shared.mcap_log.reading import SegmentReader
-from shared.mcap_log.rebuilding import RebuiltSegment
+from shared.mcap_log.segment_rebuild import RebuiltSegment
 from shared.mcap_log.writing import SegmentState
 
 TORN = ".torn"

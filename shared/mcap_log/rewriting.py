@@ -8,7 +8,7 @@ from pathlib import Path
 
 from shared.durable_names import sync_folder
 from shared.errors import LogError
-from shared.mcap_log.foreign import identity_in_log
+from shared.mcap_log.foreign_files import identity_in_log
 from shared.mcap_log.reading import LogRecord, SegmentReader
 from shared.mcap_log.recovery import MAKING, TORN
 from shared.mcap_log.writing import Segment, SegmentPolicy

@@ -15,11 +15,11 @@ from mcap.records import Attachment, Channel, Metadata, Schema
 from shared.clock import NS_PER_S
 from shared.coded_text import coded
 from shared.errors import LogError
+from shared.mcap_log.chunk_writer import ChunkWriter, McapFile, bytes_of
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.folder import segment_path
-from shared.mcap_log.foreign import LogEnd, log_end
+from shared.mcap_log.foreign_files import LogEnd, log_end
 from shared.mcap_log.identity import SegmentIdentity
-from shared.mcap_log.making import ChunkMaker, McapFile, bytes_of
 from shared.mcap_log.schemas import (
     descriptor_set,
     is_console,
@@ -74,7 +74,7 @@ class Segment:
     def __init__(self, path: Path, chunk_bytes: int, identity: SegmentIdentity) -> None:
         self._identity = identity
         self._mcap = McapFile(path, identity)
-        self._chunk = ChunkMaker()
+        self._chunk = ChunkWriter()
         self._chunk_bytes = chunk_bytes
         self._schemas: dict[str, int] = {}
         self._topics: dict[str, tuple[int, bool]] = {}  # by key, and whether it counts as a message

@@ -25,7 +25,7 @@ def test_messages_arrive_once_complete_and_in_order(ends: BusEnds, qos: Qos) -> 
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
     for count, (key, payload) in enumerate(sent, 1):
         ends.unit.publish(key, payload, qos)
-        until(partial(received.has, count), f"message {count}", look_every_s=0.002)
+        until(partial(received.has, count), f"message {count}", poll_interval_s=0.002)
     assert received.samples == sent
 
 

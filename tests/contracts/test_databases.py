@@ -108,9 +108,9 @@ def test_wait_for_decisions_does_not_wait_for_positions(store: Database) -> None
         projection.project(
             Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), last_messages=(("FF-01", 1),))
         )
-        assert projection.hasten()()
+        assert projection.flush_soon()()
         projection.project(acted(2, RegisterUnit("FF-01", "one")))
-        is_over = projection.hasten()
+        is_over = projection.flush_soon()
         projection.project(acted(3, RegisterUnit("FF-02", "two")))
         assert not is_over()
     until(is_over, "the action is in the table")

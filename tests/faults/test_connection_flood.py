@@ -99,7 +99,7 @@ def test_links_return_at_once_after_an_enrolment_during_a_flood(bus: Bus) -> Non
 
 def next_outage_s(anna: ZenohBus) -> float:
     """Duration of the next loss of the link."""
-    until(lambda: not anna.has_subscriber(KEY), "the router opens again", look_every_s=0.002)
+    until(lambda: not anna.has_subscriber(KEY), "the router opens again", poll_interval_s=0.002)
     closed_s = time.monotonic()
     until(lambda: anna.has_subscriber(KEY), "the link is back")
     return time.monotonic() - closed_s
@@ -167,7 +167,7 @@ def test_simultaneous_sessions_of_a_holder_are_limited(bus: Bus) -> None:
         def stays() -> bool:
             return not is_ended(stack.enter_context(greet(bus, many)), 0.2)
 
-        until(stays, "its place on the list", look_every_s=0.2)
+        until(stays, "its place on the list", poll_interval_s=0.2)
         began_s = time.monotonic()
         opened = []
         for _ in range(20):

@@ -76,7 +76,7 @@ def test_session_made_on_a_full_disk_is_valid_once_there_is_room(
         assert "lost if the station stops" in store.problem
         with pytest.raises(DiskFullError):  # no byte is to be left of what is forgotten
             store.compact()
-    store.look_at_disk()
+    store.check_disk()
     assert (store.in_memory, store.problem) == (False, "")
     assert accounts.of_session(secret)
     store.close()
@@ -94,7 +94,7 @@ def test_change_that_finds_the_disk_full_is_applied(path: Path, clock: ManualClo
             assert store.problem
             assert secret is not None
             assert accounts.of_session(secret)
-        store.look_at_disk()
+        store.check_disk()
         assert not store.problem
         assert accounts.of_session(secret)
         assert on_disk(path, "SELECT username FROM sessions") == [("mia",)]
@@ -109,7 +109,7 @@ def test_concurrent_changes_of_the_file_are_kept_and_conflicts_reported(
         accounts_of(store, clock).add_user("eve", PASSWORD, Role.VIEWER)
     with Store(path) as other:  # ``muster base users`` finds room a moment earlier
         accounts_of(other, clock).add_user("bob", PASSWORD, Role.COMMANDER)
-    store.look_at_disk()
+    store.check_disk()
     with store:
         users = {one.username: one.role for one in accounts_of(store, clock).users()}
         assert users == {"mia": "administrator", "bob": "commander", "eve": "viewer"}
@@ -153,7 +153,7 @@ def test_open_query_in_memory_continues_when_the_disk_has_room(
     with a_user(path, clock):
         store = Store(path, memory_fallback=True)
     with store.read() as session:  # which asks nothing until then
-        store.look_at_disk()
+        store.check_disk()
         assert not store.in_memory
         assert session.scalars(select(User.username)).all() == ["mia"]
     assert [user.username for user in accounts_of(store, clock).users()] == ["mia"]
@@ -164,7 +164,7 @@ def test_missing_database_is_created_once_there_is_room(path: Path, clock: Manua
     with files_of_at_most(0):
         store = Store(path, memory_fallback=True)
         accounts_of(store, clock).add_user("mia", PASSWORD, Role.ADMINISTRATOR)
-    store.look_at_disk()
+    store.check_disk()
     assert not store.in_memory
     store.close()
     assert on_disk(path, "SELECT username FROM users") == [("mia",)]
@@ -186,7 +186,7 @@ def test_tracks_of_a_large_database_are_not_copied_to_memory(
         assert accounts_of(store, clock).log_in("mia", PASSWORD)
         assert Records(store, clock).track("FF-01", Window(0, FOREVER_NS)) == []
         assert "trails of past incidents cannot be shown" in store.problem
-    store.look_at_disk()
+    store.check_disk()
     with store:
         assert len(Records(store, clock).track("FF-01", Window(0, FOREVER_NS))) == 1
 

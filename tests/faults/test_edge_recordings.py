@@ -42,7 +42,7 @@ class UnusedStationLink:
     def is_reachable(self, timeout_s: float) -> bool:
         return True
 
-    def why_no_link(self) -> str:
+    def link_failure_reason(self) -> str:
         return "nobody is there"
 
 

@@ -88,7 +88,7 @@ def site(tmp_path: Path, make_position: MakePosition) -> Iterator[Site]:
             journal.append([JournalRow(header.seq, POSITION, header.t_mono_ns, encode(position))])
             site.unit.say(position)
             time.sleep(APART_S)
-        until(site.has_all, "all of it is in the log", look_every_s=0.5)
+        until(site.has_all, "all of it is in the log", poll_interval_s=0.5)
         time.sleep(1.5)  # the last of it is not in the newest segment
         assert site.station.stop() == 0
         yield site

@@ -112,7 +112,7 @@ class MutatedFeed:
 class CountingLog:
     """A ``Log`` that counts, and keeps the records if it is to."""
 
-    problem = little_room = ""
+    problem = low_disk_space = ""
     is_behind = refuses = False
 
     def __init__(self, *, keeps: bool) -> None:

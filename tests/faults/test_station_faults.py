@@ -135,7 +135,7 @@ def test_erasure_waits_for_the_checkpoint_in_progress(
 class DiscardingLog:
     """A ``Log`` that keeps nothing."""
 
-    problem = little_room = ""
+    problem = low_disk_space = ""
     is_behind = refuses = False
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:

@@ -65,7 +65,7 @@ class Unit:
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 10**8)
-    monkeypatch.setattr(command_sender, "_LOOK_EVERY_S", 0.02)
+    monkeypatch.setattr(command_sender, "_POLL_INTERVAL_S", 0.02)
 
 
 def order(kind: CommandKind, rate_hz: float = 0.0, lasts_s: float = 600.0) -> SendCommand:

@@ -301,7 +301,7 @@ def test_failing_store_does_not_block_the_projection(store: Store) -> None:
     projection = SqlProjection(store)
     _limit_pages(store)
     projection.project(acted(20, *(RegisterUnit(f"U-{n}", "x" * 4000) for n in range(50))))
-    is_over = projection.hasten()
+    is_over = projection.flush_soon()
     until(is_over, "it is given up")
     assert "full" in projection.problem()
     projection.close()

@@ -134,7 +134,7 @@ def test_station_with_a_false_announcement_gets_no_link(
     station = station_of(enrolment)
     with pytest.raises(BusError):
         opened(station)
-    reason = station.why_no_link()
+    reason = station.link_failure_reason()
     assert f"127.0.0.1 port {liar_port} is not the one that enrolled this unit" in reason
 
 

@@ -69,7 +69,7 @@ class Station:
     def is_reachable(self, timeout_s: float) -> bool:
         return True
 
-    def why_no_link(self) -> str:
+    def link_failure_reason(self) -> str:
         return "nobody is there"
 
     def of(self, kind: type[OneMessage]) -> list[OneMessage]:

@@ -64,7 +64,7 @@ def new_folder(folder: Path, name: str, incident_s: int = 60) -> Path:
             log.write(t_ns, key, payload.replace(b"i1", name.encode()))
     with Store(folder / "station.sqlite") as store:
         project_whole_log(store, folder / "log", lambda _: None)
-        Roster(store, SystemClock()).bring_people({"ada0": ADA})
+        Roster(store, SystemClock()).add_unknown_people({"ada0": ADA})
     return folder
 
 

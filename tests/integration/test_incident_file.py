@@ -76,7 +76,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
             log.write(*record)
     with Store(folder / "station.sqlite") as store:
         project_whole_log(store, folder / "log", lambda _: None)
-        Roster(store, SystemClock()).bring_people(PEOPLE)
+        Roster(store, SystemClock()).add_unknown_people(PEOPLE)
     return folder
 
 

@@ -15,7 +15,7 @@ from base_station.security.pki.access import access_control
 from base_station.security.pki.folder import PkiFolder
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.enrolment import Enrolment
-from shared.link_diagnosis import why_no_link
+from shared.link_diagnosis import link_failure_reason
 from shared.tls import TlsIdentity
 from tests.rig.station_process import free_port
 
@@ -55,19 +55,19 @@ def router(pki: PkiFolder, anna: Enrolment) -> Iterator[None]:
 
 
 def test_closed_port_is_diagnosed(anna: Enrolment, now: datetime) -> None:
-    reported = why_no_link(anna.connect, anna.identity, now)
+    reported = link_failure_reason(anna.connect, anna.identity, now)
     assert "nothing listens on port" in reported
     assert "does the station run?" in reported
 
 
 @pytest.mark.usefixtures("router")
 def test_working_link_is_diagnosed(anna: Enrolment, now: datetime) -> None:
-    assert "the link should come by itself" in why_no_link(anna.connect, anna.identity, now)
+    assert "the link should come by itself" in link_failure_reason(anna.connect, anna.identity, now)
 
 
 @pytest.mark.usefixtures("router")
 def test_station_of_another_authority_is_diagnosed(foreign: Enrolment, now: datetime) -> None:
-    reported = why_no_link(foreign.connect, foreign.identity, now)
+    reported = link_failure_reason(foreign.connect, foreign.identity, now)
     assert "is not the one that enrolled this unit" in reported
 
 
@@ -78,7 +78,7 @@ def test_certificate_of_an_unknown_authority_is_diagnosed(
     mixed = TlsIdentity(
         anna.identity.authority, foreign.identity.certificate, foreign.identity.private_key
     )
-    reported = why_no_link(anna.connect, mixed, now)
+    reported = link_failure_reason(anna.connect, mixed, now)
     assert "enrol at this station" in reported
     assert "the station" in reported
 
@@ -86,7 +86,7 @@ def test_certificate_of_an_unknown_authority_is_diagnosed(
 @pytest.mark.usefixtures("router")
 def test_certificate_without_the_address_is_diagnosed(anna: Enrolment, now: datetime) -> None:
     unnamed = anna.connect[0].replace("127.0.0.1", "127.0.0.2")
-    reported = why_no_link([unnamed], anna.identity, now)
+    reported = link_failure_reason([unnamed], anna.identity, now)
     assert "does not stand for 127.0.0.2" in reported
     assert "renew-station --host 127.0.0.2" in reported
 
@@ -95,24 +95,24 @@ def test_certificate_without_the_address_is_diagnosed(anna: Enrolment, now: date
 def test_expired_certificate_is_diagnosed(pki: PkiFolder, now: datetime) -> None:
     then = now - timedelta(hours=20)  # since the authority's beginning, which is backdated
     old = PkiFolder(pki.path.parent, lambda: then).enroll("bert", valid=timedelta(hours=12))
-    assert "expired on" in why_no_link(old.connect, old.identity, now)
+    assert "expired on" in link_failure_reason(old.connect, old.identity, now)
     behind = now - timedelta(hours=10)  # this unit's clock
-    assert "the station says" in why_no_link(old.connect, old.identity, behind)
+    assert "the station says" in link_failure_reason(old.connect, old.identity, behind)
 
 
 def test_own_clock_behind_is_diagnosed(anna: Enrolment, now: datetime) -> None:
-    reported = why_no_link(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
+    reported = link_failure_reason(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
     assert "is not valid before" in reported
     assert "1970-01-01" in reported
 
 
 @pytest.mark.usefixtures("router")
 def test_missing_enrolment_is_diagnosed(anna: Enrolment, now: datetime) -> None:
-    assert "wants an enrolment" in why_no_link(anna.connect, None, now)
+    assert "wants an enrolment" in link_failure_reason(anna.connect, None, now)
 
 
 def test_unknown_host_name_is_diagnosed(anna: Enrolment, now: datetime) -> None:
-    reported = why_no_link(["tls/station.invalid:7447"], anna.identity, now)
+    reported = link_failure_reason(["tls/station.invalid:7447"], anna.identity, now)
     assert "the name station.invalid is not known" in reported
 
 
@@ -130,6 +130,6 @@ def test_server_without_tls_is_diagnosed(anna: Enrolment, now: datetime) -> None
         thread = Thread(target=answer)
         thread.start()
         port = other.getsockname()[1]
-        reported = why_no_link([f"tls/127.0.0.1:{port}"], anna.identity, now)
+        reported = link_failure_reason([f"tls/127.0.0.1:{port}"], anna.identity, now)
         thread.join()
     assert "does not speak TLS" in reported

@@ -30,7 +30,7 @@ def until_linked(*routers: Router) -> None:
             router.refresh()
         return all(router._peer_probe.responds() for router in routers)
 
-    until(linked, "they are linked", look_every_s=1.0)
+    until(linked, "they are linked", poll_interval_s=1.0)
 
 
 def test_linked_routers_are_not_reopened(tmp_path: Path) -> None:

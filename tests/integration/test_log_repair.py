@@ -67,7 +67,7 @@ class PairedLogs:
 
     def look_at_all(self) -> None:
         for _ in self.mine.segments():
-            self.check.look(self.mine.segments())
+            self.check.check_next_segment(self.mine.segments())
 
     def events(self) -> list[LogRecord]:
         return [one for one in read_log(self.mine.folder) if is_event(one[1])]
@@ -101,7 +101,7 @@ def test_damaged_segment_is_repaired_from_the_other_station(
     pair.look_at_all()
     (reported,) = pair.check.problems()
     assert pair.mine.segments()[number].path.name in reported
-    pair.mending.look(Event())
+    pair.mending.run_round(Event())
     assert pair.events() == events
     assert pair.mended_ns == [pair.mine.segments()[number].end_ns]
     pair.look_at_all()
@@ -115,7 +115,7 @@ def test_unopenable_segment_is_replaced_from_the_other_station(pair: PairedLogs)
     path.unlink()
     path.symlink_to(path.name)
     pair.look_at_all()
-    pair.mending.look(Event())
+    pair.mending.run_round(Event())
     assert pair.events() == [one for one in written if is_event(one[1])]
     assert pair.check.problems() == ()
 
@@ -126,7 +126,7 @@ def test_log_is_not_repaired_from_another_log(pair: PairedLogs) -> None:
     pair.look_at_all()
     before = pair.mine.segments()[1].path.read_bytes()
     with pytest.raises(LogError, match="not the same"):
-        pair.mending.look(Event())
+        pair.mending.run_round(Event())
     assert pair.mine.segments()[1].path.read_bytes() == before
     assert len(pair.check.problems()) == 1
 
@@ -141,9 +141,9 @@ def test_unrepairable_segment_does_not_prevent_other_repairs(pair: PairedLogs) -
     pair.look_at_all()
     whole = [one for one in written if is_event(one[1]) and one[0] >= T0 + 10**9]
     with pytest.raises(LogError, match="not the same"):
-        pair.mending.look(Event())
+        pair.mending.run_round(Event())
     assert not list(pair.mine.folder.glob("*.recovering")), "the room is for the log"
-    pair.mending.look(Event())
+    pair.mending.run_round(Event())
     assert [one for one in pair.events() if one[0] >= T0 + 10**9] == whole
     assert pair.check.damaged == (pair.mine.segments()[0].path,)
 
@@ -156,7 +156,7 @@ def test_consecutive_repaired_segments_contain_every_event_once(pair: PairedLogs
     pair.look_at_all()
     assert len(pair.check.damaged) == 2
     for _ in range(2):
-        pair.mending.look(Event())
+        pair.mending.run_round(Event())
     assert pair.events() == [one for one in written if is_event(one[1])]
     assert pair.check.problems() == ()
 
@@ -167,5 +167,5 @@ def test_repair_waits_for_the_other_station(pair: PairedLogs) -> None:
     pair.look_at_all()
     pair.other = None
     before = pair.events()
-    pair.mending.look(Event())
+    pair.mending.run_round(Event())
     assert (pair.events(), pair.mended_ns) == (before, [])

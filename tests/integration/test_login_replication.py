@@ -184,7 +184,7 @@ def test_used_ticket_stays_used(sides: tuple[TableSide, TableSide]) -> None:
     active.accounts.create_login_ticket(there)  # so that all is copied again
     standby.copy(active)
     assert standby.accounts.redeem_login_ticket(ticket) is None
-    assert active.tables.take_away(standby.tables.read())
+    assert active.tables.apply_removals(standby.tables.read())
     assert active.accounts.redeem_login_ticket(ticket) is None
 
 
@@ -206,9 +206,9 @@ def test_login_ended_while_the_other_was_off_ends_there(
 def meet(leads: TableSide, follows: TableSide, first: str) -> None:
     """Each hears of the other, one before the other one."""
     if first == "who leads":
-        leads.tables.take_away(follows.tables.read())
+        leads.tables.apply_removals(follows.tables.read())
     follows.copy(leads)
-    leads.tables.take_away(follows.tables.read())
+    leads.tables.apply_removals(follows.tables.read())
     follows.copy(leads)
 
 

@@ -209,7 +209,7 @@ def test_damage_skipped_by_a_seek_is_found_by_the_check(
     data[len(data) // 2] ^= 0xFF
     path.write_bytes(data)
     assert archive.flaws() == ()
-    while archive.look():
+    while archive.check_next_chunk():
         pass
     (damage,) = archive.flaws()
     assert damage.startswith(f"a part of the log cannot be read: {path.name}: the chunk at byte")

@@ -45,11 +45,11 @@ class Pair:
             self._round(router, follows, "leads", "leads"),
         ]
 
-    def look(self, rounds: int = 3) -> None:
+    def run_rounds(self, rounds: int = 3) -> None:
         """The standby first, as it does where it has the leader's answer at once."""
         for _ in range(rounds):
             for one in reversed(self._rounds):
-                one.look(Event())
+                one.run_round(Event())
 
     def _round(
         self, router: MemoryRouter, side: TableSide, leader: str | None, other: str
@@ -93,7 +93,7 @@ def test_lost_tables_are_restored_from_the_other_station(
             lost.accounts.add_user("admin", "another battery", Role.ADMINISTRATOR, generated=True)
             lost.accounts.add_user("eve", PASSWORD, Role.VIEWER)  # entered since
         pair = Pair(*((lost, had) if loser == "who leads" else (had, lost)))
-        pair.look()
+        pair.run_rounds()
         for one in (lost, had):
             names = {"ada", "admin", "eve"} if loser == "who leads" else {"ada", "admin"}
             assert {user.username for user in one.accounts.users()} == names
@@ -133,7 +133,7 @@ def test_stations_that_both_lost_their_tables_agree_again(
     leads.accounts.add_user("admin", PASSWORD, Role.ADMINISTRATOR, generated=True)
     for one in sides:
         one.tables.note_lost(LOST)
-    Pair(leads, follows).look()
+    Pair(leads, follows).run_rounds()
     for one in sides:
         assert one.tables.lost() == ()
         assert [user.username for user in one.accounts.users()] == ["admin"]
@@ -181,13 +181,13 @@ def test_audit_is_identical_with_different_clocks(
     standby.clock.advance(86_400.0)  # whoever acts here is a day ahead
     standby.records.audit("bob", "LoggedIn", "here")
     active.tables.add_audit(standby.tables.audit_behind(0, 9))
-    copying.look(Event())
+    copying.run_round(Event())
     for number in range(1200):  # more than come at once
         active.records.audit("ada", "LoggedIn", f"login {number}")
     active.clock.advance(-3600.0)
     active.records.audit("ada", "LoggedIn", "after the clock was set back")
     for _ in range(4):
-        copying.look(Event())
+        copying.run_round(Event())
     assert audit_of(standby) == audit_of(active)
     assert len(audit_of(standby)) == 1202
 
@@ -202,7 +202,7 @@ def test_audit_of_a_replacement_machine_is_copied_from_its_start(
     serving = TableServer("active", router.attach_station(), gone.tables, gone.pki)
     for number in range(3):
         gone.records.audit("ada", "LoggedIn", f"login {number}")
-    copying.look(Event())
+    copying.run_round(Event())
     serving.close()
     with Store(tmp_path / "new.sqlite") as store:
         new = TableSide(tmp_path, store)
@@ -210,7 +210,7 @@ def test_audit_of_a_replacement_machine_is_copied_from_its_start(
         new.tables.add_audit(standby.tables.audit_behind(0, 9))  # so it has as many, and more
         TableServer("active", router.attach_station(), new.tables, new.pki)
         run = 2
-        copying.look(Event())
+        copying.run_round(Event())
         assert "at the new machine" in audit_of(standby)
         assert len(audit_of(standby)) == 4
 
@@ -227,9 +227,9 @@ def test_erasures_of_the_other_station_are_repeated_until_recorded(
         raise StoreError("the disk is full")
 
     with pytest.raises(StoreError):
-        copy_over_the_bus(active, standby, full_disk).look(Event())
-    copy_over_the_bus(active, standby, received.append).look(Event())  # as after a kill
-    copy_over_the_bus(active, standby, received.append).look(Event())
+        copy_over_the_bus(active, standby, full_disk).run_round(Event())
+    copy_over_the_bus(active, standby, received.append).run_round(Event())  # as after a kill
+    copy_over_the_bus(active, standby, received.append).run_round(Event())
     assert received == ["person p9", "person p9"]
 
 
@@ -241,7 +241,7 @@ def test_erasure_requested_by_a_station_is_applied_again_after_copying(
     active, standby = sides
     active.records.audit(BY_OTHER_STATION, "ForgotPerson", "person p8: as this one had asked")
     received: list[str] = []
-    copy_over_the_bus(active, standby, received.append, leads).look(Event())
+    copy_over_the_bus(active, standby, received.append, leads).run_round(Event())
     assert received == heeds
 
 
@@ -251,15 +251,15 @@ def test_the_base_map_is_the_active_stations(sides: tuple[TableSide, TableSide])
     corners = Corners((1.0, 2.0), (1.0, 3.0), (0.0, 2.0))
     for hash_, image in (("a1", b"a map"), ("b2", b"another")):
         active.base_maps.put(image, hash_, corners)
-        copying.look(Event())
+        copying.run_round(Event())
         assert standby.base_maps.corners() == (hash_, corners)
         assert standby.base_maps.image(hash_) == image
     moved = Corners((1.5, 2.0), (1.5, 3.0), (0.0, 2.0))
     active.base_maps.put(b"another", "b2", moved)
-    copying.look(Event())
+    copying.run_round(Event())
     assert standby.base_maps.corners() == ("b2", moved)
     active.base_maps.remove()
-    copying.look(Event())
+    copying.run_round(Event())
     assert standby.base_maps.corners() is None
 
 
@@ -277,7 +277,7 @@ def test_people_photos_audit_and_enrolments_are_replicated_over_the_bus(
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
     forgotten: list[str] = []
     copying = copy_over_the_bus(active, standby, forgotten.append)
-    look = partial(copying.look, Event())
+    look = partial(copying.run_round, Event())
     look()
     assert standby.roster.photo(person.person_id) == (b"jpeg", "hash")
     assert standby.roster.known(person.person_id).photo_url is not None

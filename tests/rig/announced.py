@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.app.kept_announcement import AnyAnnouncement
+from base_station.app.service_announcement import AnyAnnouncement
 from shared.errors import BusError
 
 

@@ -54,7 +54,7 @@ def make_station(folder: Path) -> None:
             log.write(*record)
     with Store(folder / "station.sqlite") as store:
         project_whole_log(store, folder / "log", lambda _: None)
-        Roster(store, SystemClock()).bring_people(PEOPLE)
+        Roster(store, SystemClock()).add_unknown_people(PEOPLE)
 
 
 def muster(*arguments: str | Path) -> Result:

@@ -18,7 +18,7 @@ from tests.rig.station_script import Record
 class ListedLog:
     """A ``Log`` that keeps its records in a list."""
 
-    problem, little_room, is_behind, refuses = "", "", False, False
+    problem, low_disk_space, is_behind, refuses = "", "", False, False
 
     def __init__(self) -> None:
         self.records: list[Record] = []

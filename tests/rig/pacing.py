@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from shared.errors import StoreError
 
 PATIENCE_S = 180.0  # of a busy machine, on which two stations start beside others
-_LOOK_EVERY_S = 0.05
+_POLL_INTERVAL_S = 0.05
 _REST = 4  # times as long as the look before
 
 
@@ -20,7 +20,7 @@ def wait_until(what: str, condition: Callable[[], object], patience_s: float = P
         if looked_s - began_s > patience_s:
             raise StoreError(f"it did not come true within {patience_s:g} s that {what}")
         # To look may take long itself: no more than a fifth of the machine's time.
-        time.sleep(max(_LOOK_EVERY_S, _REST * (looked_s - look_s)))
+        time.sleep(max(_POLL_INTERVAL_S, _REST * (looked_s - look_s)))
         look_s = time.monotonic()
     return time.monotonic() - began_s
 

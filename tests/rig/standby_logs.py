@@ -35,7 +35,7 @@ def disk(recorder: Recorder) -> LogFeed:
 class FullDisk:
     """A ``Log`` that takes as much as it has room for."""
 
-    problem, little_room = "the log cannot be written", "only 1 MB is free"
+    problem, low_disk_space = "the log cannot be written", "only 1 MB is free"
     is_behind = refuses = False
 
     def __init__(self) -> None:

@@ -35,7 +35,7 @@ from tests.rig.program import Launch, Program, end_hard, launch_installed
 
 _OUTPUT = "station.txt"
 _READY = re.compile(r"^ready (http\S+)\n", re.MULTILINE)
-_LOOK_EVERY_S = 0.02
+_POLL_INTERVAL_S = 0.02
 _START_TIMEOUT_S = 180.0  # a machine that does ten other things at once takes a minute
 _STOP_TIMEOUT_S = 30.0
 
@@ -179,5 +179,5 @@ def _ready_url(program: Program, output: Path, before: int, patience_s: float) -
             return ready[1]
         if ended:
             break
-        time.sleep(_LOOK_EVERY_S)
+        time.sleep(_POLL_INTERVAL_S)
     raise StoreError(f"the station to be measured did not start: {printed[-2000:]}")

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 
 PATIENCE_S = 120.0  # of a busy machine; nothing is measured by it
-_LOOK_EVERY_S = 0.02
+_POLL_INTERVAL_S = 0.02
 _REST = 4  # times as long as the look before
 
 
@@ -14,7 +14,7 @@ def until(
     condition: Callable[[], object],
     what: str = "it",
     patience_s: float = PATIENCE_S,
-    look_every_s: float = _LOOK_EVERY_S,
+    poll_interval_s: float = _POLL_INTERVAL_S,
 ) -> None:
     """Until ``what`` is so; an AssertionError that names it where that does not come about."""
     look_s = time.monotonic()
@@ -23,5 +23,5 @@ def until(
         looked_s = time.monotonic()
         assert looked_s < end_s, f"waited in vain for this: {what}"
         # To look may take long itself: no more than a fifth of the machine's time.
-        time.sleep(max(look_every_s, _REST * (looked_s - look_s)))
+        time.sleep(max(poll_interval_s, _REST * (looked_s - look_s)))
         look_s = time.monotonic()

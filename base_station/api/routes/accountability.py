@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field, StringConstraints
 from base_station.api.authentication import Viewer
 from base_station.api.forms import ID, Form, Id, PersonIdText, UnitId, UnitIdOrNone
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import open_or_404
+from base_station.api.request_incident import open_or_404
 from base_station.api.routes.commands import EveryoneTarget, Target, UnitTarget, members_of
 from base_station.api.services import Station
 from base_station.core.accountability import LONGEST_S, SHORTEST_S

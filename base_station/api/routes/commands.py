@@ -12,8 +12,8 @@ from pydantic import Discriminator, Field, Tag
 from base_station.api.authentication import Viewer
 from base_station.api.forms import Form, Id, Note, PersonIdText, ShortText, UnitIdText
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import open_or_404
 from base_station.api.problems import Problem
+from base_station.api.request_incident import open_or_404
 from base_station.api.services import Services, Station
 from base_station.views.wire import CommandView
 from shared.coded_text import coded

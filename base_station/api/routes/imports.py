@@ -18,9 +18,9 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import EverySeconds, Point
 from base_station.api.services import Services
-from base_station.importers.bring_in import ImportDesk, anchor_of, require_anchor
+from base_station.importers.import_service import ImportService, anchor_of, require_anchor
 from base_station.importers.interface import MOST_BYTES, ImportOptions
-from base_station.importers.placing import placed
+from base_station.importers.placement import placed
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import ImportRow, IncidentRow
 from base_station.storage.imports import ImportedContent
@@ -114,7 +114,7 @@ async def add_import(
                 came += len(part)
                 await run_in_threadpool(file.write, part)
         async with station.import_lock:
-            return await run_in_threadpool(_bring_in, desk, path, options, station, who.username)
+            return await run_in_threadpool(_import_file, desk, path, options, station, who.username)
 
 
 @router.delete("/incidents/{incident_id}/imports/{import_id}", status_code=204)
@@ -192,12 +192,12 @@ def imported_file(incident_id: Id, import_id: Id, station: CurrentStation, who: 
     )
 
 
-def _desk(station: Services, incident: IncidentRow, catalogue: ImportCatalogue) -> ImportDesk:
+def _desk(station: Services, incident: IncidentRow, catalogue: ImportCatalogue) -> ImportService:
     try:
         anchor = require_anchor(station.records, incident)
     except UserError as error:
         raise Problem(409, text_of_error(error)) from error
-    return ImportDesk(catalogue, incident, anchor, station.clock.utc_ns())
+    return ImportService(catalogue, incident, anchor, station.clock.utc_ns())
 
 
 def _anchor(station: Services, incident: IncidentRow) -> Anchor:
@@ -228,11 +228,11 @@ def _length(request: Request) -> int:
     return int(text) if text.isdecimal() else 0
 
 
-def _bring_in(
-    desk: ImportDesk, path: Path, options: ImportOptions, station: Services, by: str
+def _import_file(
+    desk: ImportService, path: Path, options: ImportOptions, station: Services, by: str
 ) -> ImportAnswer:
     try:
-        import_id = desk.bring_in(path, options, lambda action: station.perform(by, action))
+        import_id = desk.import_file(path, options, lambda action: station.perform(by, action))
     except UserError as error:
         raise Problem(422, text_of_error(error)) from error
     station.projection.flush()

@@ -28,9 +28,9 @@ from base_station.api.forms import (
 )
 from base_station.api.idempotent_request import Perform
 from base_station.api.incident_closing import closing_obstacles
-from base_station.api.named_incident import open_incident as open_incident_of
 from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
+from base_station.api.request_incident import open_incident as open_incident_of
 from base_station.api.routes.accountability import Seconds
 from base_station.api.services import Services, Station
 from base_station.core.alarms import ALARMS

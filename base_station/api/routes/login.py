@@ -82,7 +82,7 @@ def _log_in(
         station.records.audit(credentials.username, "LoginRefused", address)
         raise Problem(401, coded("login-wrong", "Name or password is wrong."))
     station.records.audit(principal.username, "LoggedIn", address)
-    give_cookie(request, response, station, secret)
+    set_session_cookie(request, response, station, secret)
     return _me(principal, station)
 
 
@@ -99,11 +99,13 @@ def log_in_with_ticket(
         throttle.record_refusal(address)
         raise Problem(401, coded("ticket-void", "This ticket is of no use (any more); log in."))
     station.records.audit(principal.username, "WentOn", address)
-    give_cookie(request, response, station, secret)
+    set_session_cookie(request, response, station, secret)
     return _me(principal, station)
 
 
-def give_cookie(request: Request, response: Response, station: LoginServices, secret: str) -> None:
+def set_session_cookie(
+    request: Request, response: Response, station: LoginServices, secret: str
+) -> None:
     """In the place of the session that the browser had, which is over."""
     before = request.cookies.get(COOKIE)
     if before is not None:

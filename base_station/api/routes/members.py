@@ -7,8 +7,8 @@ from fastapi import APIRouter
 from base_station.api.authentication import Viewer
 from base_station.api.forms import Form, Id, UnitId
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import open_or_404
 from base_station.api.problems import Problem
+from base_station.api.request_incident import open_or_404
 from base_station.api.routes.commands import EveryoneTarget, Target, UnitTarget, members_of
 from base_station.api.services import Services, Station
 from base_station.views.answer import Answer

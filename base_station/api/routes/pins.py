@@ -21,8 +21,8 @@ from base_station.api.forms import (
     UnitIdText,
 )
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
+from base_station.api.request_incident import site_incident_id
 from base_station.api.services import Services, Station
 from base_station.views.wire import BeaconView, PinView
 from shared.clock import NS_PER_MS

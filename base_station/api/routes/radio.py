@@ -8,11 +8,11 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from base_station.api.authentication import Commander, Viewer
+from base_station.api.byte_ranges import begins_at_start, ranged_response
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_TIME_MS, Id
 from base_station.api.problems import Problem
-from base_station.api.ranged import begins_at_start, ranged_response
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services, audit_given_out
 from base_station.radio.radio_log import RadioLog

@@ -14,8 +14,8 @@ from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
+from base_station.api.request_incident import site_incident_id
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute

@@ -21,9 +21,9 @@ from base_station.api.forms import (
     UnitIdText,
 )
 from base_station.api.idempotent_request import Perform
-from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
+from base_station.api.request_incident import site_incident_id
 from base_station.api.services import Services, Station
 from base_station.storage.db import models
 from base_station.storage.db.roster import Roster

@@ -13,7 +13,7 @@ from base_station.api.authentication import Administrator, Viewer
 from base_station.api.forms import Form, Name
 from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
-from base_station.api.routes.login import give_cookie
+from base_station.api.routes.login import set_session_cookie
 from base_station.api.services import Logins
 from base_station.views.answer import to_ms
 from shared.coded_text import coded
@@ -112,4 +112,4 @@ def change_own_password(
     station.accounts.change_user(who.username, change.new_password, None)
     station.records.audit(who.username, "ChangedOwnPassword", "")
     if who.must_change_password:
-        give_cookie(request, response, station, station.accounts.begin_session(who.username))
+        set_session_cookie(request, response, station, station.accounts.begin_session(who.username))

@@ -32,7 +32,7 @@ class MissedCheckIn:
             return off_duty(unit)
         if t_ns < duty.due_ns:
             about = unit.wearer.from_ns(t_ns)
-            return Clear(duty.counts_from_ns, _why_not_overdue(duty), about=about)
+            return Clear(duty.counts_from_ns, _resolution_text(duty), about=about)
         answers_due_ns = [open_request_ns + ANSWER_NS for open_request_ns in duty.open_requests_ns]
         onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
         return Finding(
@@ -56,7 +56,7 @@ def _code(duty: Duty) -> str:
     return "par-overdue-unanswered" if is_asked else "par-overdue"
 
 
-def _why_not_overdue(duty: Duty) -> str:
+def _resolution_text(duty: Duty) -> str:
     """With the author of the last confirmation, who is a name and no part of the code."""
     if duty.confirmation is None:
         code = coded("over-not-overdue", "not overdue; PAR not yet confirmed")

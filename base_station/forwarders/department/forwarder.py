@@ -185,7 +185,7 @@ class DepartmentForwarder:
 
     def _away_reason(self) -> str:
         now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
-        renewal = f"renew it there with {self._enrolment.made_again}"
+        renewal = f"renew it there with {self._enrolment.renewal_command}"
         return validity_problem(self._enrolment.identity, now, renewal) or (
             "it does not answer; is it switched on, does the network lead there, and has it "
             f"enrolled {self._enrolment.name}, which is not revoked?"

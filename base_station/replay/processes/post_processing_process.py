@@ -128,7 +128,7 @@ class PostProcessingProcess(PostProcessor):
     ) -> PostProcessingResult:
         smoothed, raw = dict[str, bytes](), dict[str, bytes]()
         while (encoded := line.receive()) is not None:
-            match wire.read_look_back(encoded):
+            match wire.read_post_processing_report(encoded):
                 case wire.ProgressFrame(done):
                     on_progress(done)
                 case wire.UnitTrailsFrame(unit_id, of_unit, own):

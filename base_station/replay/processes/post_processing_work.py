@@ -45,7 +45,7 @@ class StationTime:
         return self._clock.monotonic_ns()
 
 
-def stand_back(line: FrameChannel) -> None:
+def lower_priority(line: FrameChannel) -> None:
     """Lowers its priority below live work, and ends when the socket is closed."""
     os.nice(_NICE)
     gc_tuning.return_free_memory()

@@ -313,7 +313,7 @@ def read_replay(encoded: bytes) -> ReplayReport:
     return report
 
 
-def read_look_back(encoded: bytes) -> PostProcessingReport:
+def read_post_processing_report(encoded: bytes) -> PostProcessingReport:
     report: PostProcessingReport = msgspec.msgpack.decode(encoded, type=PostProcessingReport)
     return report
 

@@ -41,7 +41,7 @@ def boots_below(folder: Path) -> Iterator[BlackBoxBoot]:
                 continue
 
 
-def given_boots(paths: Iterable[Path]) -> Iterator[BlackBoxBoot]:
+def boots_in_files(paths: Iterable[Path]) -> Iterator[BlackBoxBoot]:
     """Boots that a person names.  Raises RecordingError where there is none."""
     for path in paths:
         found = [read_boot(path)] if segment_paths(path) else list(boots_below(path))

@@ -46,7 +46,7 @@ class Database(Protocol):
         """
         ...
 
-    def look_at_disk(self) -> None:
+    def check_disk(self) -> None:
         """Called now and then while nothing is to be written: go on where it works again."""
         ...
 

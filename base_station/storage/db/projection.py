@@ -1,7 +1,7 @@
 """Writes what the drive decided into the tables, in a thread of its own.
 
 The drive never waits for the database: projections queue up and go in together, one
-transaction every half second or when someone asks for them (``flush``, ``hasten``).  While the
+transaction every half second or when someone asks for them (``flush``, ``flush_soon``).  While the
 disk takes nothing they go into the copy in memory and queue on: they go into the file when it does.
 """
 
@@ -131,7 +131,7 @@ class SqlProjection:
             self._changed.wait_for(self._write_now(goal), timeout_s)
             return self._done >= goal
 
-    def hasten(self) -> Callable[[], bool]:
+    def flush_soon(self) -> Callable[[], bool]:
         """Have decisions before this call written now, without waiting.  Gives a function: True if
         that is over.  Positions are not waited for: they come all the time.
         """
@@ -167,7 +167,7 @@ class SqlProjection:
         if batch:
             self._write(batch)
         else:
-            self._store.look_at_disk()
+            self._store.check_disk()
         with self._changed:
             waits = len(self._pending) > self._in_memory
             self._wanted = self._wanted and waits and not self._failure

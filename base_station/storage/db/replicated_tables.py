@@ -120,7 +120,7 @@ class ReplicatedTables:
         with self._store.read() as session:
             return "base_map" in lost_tables(session) and not rows_of(session, BaseMap)
 
-    def take_away(self, standby: ReplicatedRows) -> bool:
+    def apply_removals(self, standby: ReplicatedRows) -> bool:
         """Apply removals that the standby made while it was not reachable, and later roles and
         passwords; nothing else of it.  True if there was any.
         """

@@ -104,7 +104,7 @@ class Roster:
             removed_ns=None,
         )
 
-    def bring_people(self, people: Mapping[str, KnownPerson]) -> None:
+    def add_unknown_people(self, people: Mapping[str, KnownPerson]) -> None:
         """Names of people by their ids, for a log of another station; who is known stays."""
         with self._store.write() as session:
             for person_id, one in people.items():

@@ -106,7 +106,7 @@ class ServerStore:
             session.commit()
             session.info[IN_MEMORY] = False
 
-    def look_at_disk(self) -> None:
+    def check_disk(self) -> None:
         if self.is_away:
             with suppress(StoreError), self.read() as session:
                 session.execute(text("SELECT 1"))

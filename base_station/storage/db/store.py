@@ -176,7 +176,7 @@ class Store:
             if self._memory is not None and is_kept:
                 self._memory.keep(changes)
 
-    def look_at_disk(self) -> None:
+    def check_disk(self) -> None:
         """Go on in the file where its disk takes something again."""
         if self.in_memory:
             with suppress(DiskHangsError), self._alone():

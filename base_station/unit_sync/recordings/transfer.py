@@ -347,7 +347,7 @@ def _digest_of(path: Path) -> bytes:
         return hashlib.file_digest(file, "sha256").digest()
 
 
-def ask_over(bus: Bus) -> Ask:
+def ask_via_bus(bus: Bus) -> Ask:
     """Questions over the bus, behind live data."""
 
     def ask(unit_id: str, question: str) -> bytes | None:

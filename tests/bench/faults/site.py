@@ -34,7 +34,7 @@ _PORT = 7447
 _FLIPPED = 3  # bits of each segment
 _HEAD_BYTES = 1000  # of a segment: what kind of file it is, for one
 _TORN_BYTES = 500
-_LOOK_EVERY_S = 0.5
+_POLL_INTERVAL_S = 0.5
 _STOP_S = 30.0
 # The machine's clock is set by a day while the agent runs.
 _AGENT_OF_JUMPS = """
@@ -239,7 +239,7 @@ class Site:
         while not any(one.live and one.t_ns > since_ns for one in self.logged()):
             if time.monotonic() > end_s:
                 return False
-            time.sleep(_LOOK_EVERY_S)
+            time.sleep(_POLL_INTERVAL_S)
         return True
 
     def wait_logged(self, wanted: set[MessageOfUnit], patience_s: float) -> bool:
@@ -248,7 +248,7 @@ class Site:
         while time.monotonic() < end_s:
             if wanted <= {one.message for one in self.logged()}:
                 return True
-            time.sleep(_LOOK_EVERY_S)
+            time.sleep(_POLL_INTERVAL_S)
         return False
 
 

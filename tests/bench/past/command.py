@@ -42,7 +42,7 @@ from tests.rig.simulated_units import unit_names
 
 _RATE_HZ = 7.0  # messages a second of each unit
 _TO_REACH_MB = 500.0
-_LOOK_EVERY_S = 0.02
+_POLL_INTERVAL_S = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ def _peak_mb(processes: ReplayProcesses) -> Iterator[list[float]]:
     seen_mb, over = [0.0], Event()
 
     def look() -> None:
-        while not over.wait(_LOOK_EVERY_S):
+        while not over.wait(_POLL_INTERVAL_S):
             pid = processes.pid
             if pid is not None:
                 seen_mb.extend(_memory_mb(one) for one in psutil.Process(pid).children())

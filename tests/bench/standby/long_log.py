@@ -28,7 +28,7 @@ from tests.rig.simulated_units import unit_names
 
 _RATE_HZ = 7.0  # messages a second of each unit
 _PATIENCE_S = 1200.0
-_LOOK_EVERY_S = 0.2
+_POLL_INTERVAL_S = 0.2
 _TRAILS_WITHIN_S = 10.0
 _SHOWN = ("units", "alarms", "commands", "incident", "plan", "anchor", "pins", "beacons")
 
@@ -120,7 +120,7 @@ def _memory(station: Station) -> Iterator[list[float]]:
     seen, over = [0.0], Event()
 
     def look() -> None:
-        while not over.wait(_LOOK_EVERY_S):
+        while not over.wait(_POLL_INTERVAL_S):
             if station.process is not None and station.process.poll() is None:
                 seen.append(processes.memory_mb(station.process.pid))
 

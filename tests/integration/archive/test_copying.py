@@ -12,7 +12,7 @@ from sqlalchemy import select
 from typer.testing import CliRunner
 
 from base_station.app.archive_sources import open_copier
-from base_station.archive.entry import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
+from base_station.archive.catalogue import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
 from base_station.archive.store import open_store
 from base_station.cli import app
 from base_station.engine.log_feed import FolderFeed

@@ -11,8 +11,8 @@ import pytest
 from sqlalchemy import select
 from typer.testing import CliRunner
 
+from base_station.archive.catalogue import LOG_NAME, archived_ids, require_entry
 from base_station.archive.copying import ArchiveCopier
-from base_station.archive.entry import LOG_NAME, archived_ids, require_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import ArchiveStore, FolderStore, open_store
 from base_station.cli import app

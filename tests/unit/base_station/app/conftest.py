@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.app import kept_announcement
+from base_station.app import service_announcement
 from tests.rig.announced import Announced
 
 
 @pytest.fixture
 def announced(monkeypatch: pytest.MonkeyPatch) -> Announced:
     announced = Announced()
-    monkeypatch.setattr(kept_announcement, "Announcer", announced.begin)
+    monkeypatch.setattr(service_announcement, "Announcer", announced.begin)
     return announced

@@ -41,6 +41,6 @@ def test_name_of_an_earlier_version_does_not_stay_in_force(tmp_path: Path) -> No
                     )
                 )  # fmt: skip
         older = OlderAssignments(roster, gate)
-        older.look()
-        older.look()
+        older.renew()
+        older.renew()
     assert gate.acted == [("station", Assign("FF-01", ada))]

@@ -50,7 +50,7 @@ def archive_in(
 ) -> AutomaticArchive:
     place = ArchivingContext(no_process, "log", "db", prepare, lambda _: None, lambda: True)
     config = ArchiveConfig(str(folder), radio=radio)
-    return AutomaticArchive(config, place, copies, clock, look_every_s=0.01)
+    return AutomaticArchive(config, place, copies, clock, poll_interval_s=0.01)
 
 
 def test_lasting_failure_is_a_problem_and_is_retried(

@@ -35,7 +35,7 @@ def copies(tmp_path: Path) -> Iterator[ArchivedCopies]:
 def problems(copies: ArchivedCopies, view: ArchiveView | None, *, leads: bool = True) -> list[str]:
     outdated = OutdatedCopies(copies, lambda: view, lambda: leads)
     assert outdated.problems() == ()
-    outdated.look()
+    outdated.refresh()
     return [str(one) for one in outdated.problems()]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator
 
-from base_station.archive.partly_archived import OpenedPart, PartlyArchivedFeed, here_or_lost
+from base_station.archive.partly_archived import OpenedPart, PartlyArchivedFeed, without_archived
 from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
 from base_station.storage.missing_segments import KnownSegment
 from shared.mcap_log import LogRecord
@@ -49,4 +49,4 @@ def test_a_segment_of_an_archived_incident_does_not_count_as_lost() -> None:
         KnownSegment(name, first_ns, first_ns + 9, 1)
         for name, first_ns in (("1", 0), ("2", 30), ("3", 40))
     )
-    assert here_or_lost((before, within, behind), parts) == (before, behind)
+    assert without_archived((before, within, behind), parts) == (before, behind)

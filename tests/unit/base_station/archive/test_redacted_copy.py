@@ -9,7 +9,7 @@ import pytest
 
 from base_station.app.archive_sources import open_copier
 from base_station.app.factories import project_whole_log
-from base_station.archive.entry import CatalogueEntry, require_entry
+from base_station.archive.catalogue import CatalogueEntry, require_entry
 from base_station.archive.redacted_copy import (
     CopyIncompleteError,
     ErasedSubjects,
@@ -51,7 +51,7 @@ def archive(tmp_path: Path) -> FolderStore:
     write_log(data, script.records)
     with Store(data / "station.sqlite") as store:
         project_whole_log(store, data / "log", lambda _: None)
-        Roster(store, SystemClock()).bring_people({"ada-0001": KnownPerson("Ada", "", "")})
+        Roster(store, SystemClock()).add_unknown_people({"ada-0001": KnownPerson("Ada", "", "")})
     with open_copier(archive.address, data) as copier:
         list(copier.copy_due(lambda _: None))
     return archive

@@ -39,7 +39,7 @@ NO_DATA = (type, ModuleType, FunctionType, BuiltinFunctionType)
 class Room:
     """A log that accepts every record and keeps none."""
 
-    problem, little_room, is_behind, refuses = "", "", False, False
+    problem, low_disk_space, is_behind, refuses = "", "", False, False
 
     def write(self, _t_ns: int, _key: str, _payload: bytes) -> bool:
         return True

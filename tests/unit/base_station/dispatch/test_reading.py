@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from base_station.dispatch.config import DispatchConfig
-from base_station.dispatch.in_words import description, incident_name
+from base_station.dispatch.description import description, incident_name
 from base_station.dispatch.reading import read_report
 from base_station.dispatch.report_parts import MOST_UNITS, MOST_WARNINGS
 from shared.clock import NS_PER_S

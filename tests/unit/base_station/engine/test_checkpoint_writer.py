@@ -20,7 +20,7 @@ STATE = make_pipeline().checkpoint()
 class Log:
     """A log whose disk writes as much as the test allows."""
 
-    problem = little_room = ""
+    problem = low_disk_space = ""
     is_behind = refuses = False
 
     def __init__(self) -> None:

@@ -26,7 +26,7 @@ class Disk:
     """A log that keeps every record until it is set not to."""
 
     problem = ""
-    little_room = ""
+    low_disk_space = ""
     is_behind = False
     refuses = False
 

@@ -56,7 +56,7 @@ class Publisher:
 class Disk:
     """A ``Log`` that counts the waits for the disk."""
 
-    problem = little_room = ""
+    problem = low_disk_space = ""
     is_behind = refuses = False
 
     def __init__(self) -> None:

@@ -12,7 +12,7 @@ import pytest
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue, ErasureState
 from base_station.privacy.incident_retention import (
     BY_RETENTION,
-    LOOK_EVERY_S,
+    POLL_INTERVAL_S,
     IncidentRetention,
 )
 from base_station.storage.db.erasure import FORGOT_INCIDENT
@@ -61,10 +61,10 @@ class Retention:
                 )
             )  # fmt: skip
 
-    def look(self) -> list[str]:
-        """Ids of all erasures after the next look."""
-        self.clock.advance(LOOK_EVERY_S)
-        self._retention.look()
+    def request_next(self) -> list[str]:
+        """Ids of all erasures after the next check."""
+        self.clock.advance(POLL_INTERVAL_S)
+        self._retention.request_next()
         return [job.subject_id for job in self.queue.jobs]
 
     def finish(self) -> None:
@@ -99,37 +99,37 @@ def test_incidents_over_their_time_are_erased_oldest_first_and_once(retention: R
     retention.add("old", 31.0)
     retention.add("oldest", 400.0)
     retention.add("open", None)
-    assert retention.look() == ["oldest"]
-    assert retention.look() == ["oldest"], "one at a time"
+    assert retention.request_next() == ["oldest"]
+    assert retention.request_next() == ["oldest"], "one at a time"
     retention.finish()
-    assert retention.look() == ["oldest", "old"]
+    assert retention.request_next() == ["oldest", "old"]
     retention.finish()
-    assert retention.look() == ["oldest", "old"]
+    assert retention.request_next() == ["oldest", "old"]
     retention.clock.advance(0.2 * NS_PER_DAY / NS_PER_S)
-    assert retention.look() == ["oldest", "old", "young"]
+    assert retention.request_next() == ["oldest", "old", "young"]
 
 
 def test_erased_incident_is_erased_again_for_late_data(retention: Retention) -> None:
     retention.add("old", 31.0)
-    retention.look()
+    retention.request_next()
     retention.finish()
     retention.bring_late_data("old")
-    assert retention.look() == ["old", "old"]
+    assert retention.request_next() == ["old", "old"]
     retention.finish()
-    assert retention.look() == ["old", "old"]
+    assert retention.request_next() == ["old", "old"]
 
 
 def test_refusal_is_tried_again(retention: Retention) -> None:
     """While an incident is open nothing is erased."""
     retention.add("old", 31.0)
     retention.refusal = "The incident Mill Lane is open; close it first."
-    assert retention.look() == []
+    assert retention.request_next() == []
     retention.refusal = ""
-    assert retention.look() == ["old"]
+    assert retention.request_next() == ["old"]
 
 
 def test_failed_erasure_is_not_tried_forever(retention: Retention) -> None:
     retention.add("old", 31.0)
-    retention.look()
+    retention.request_next()
     retention.queue.jobs[-1].state = ErasureState.FAILED
-    assert retention.look() == ["old"]
+    assert retention.request_next() == ["old"]

@@ -10,8 +10,8 @@ import pytest
 
 from base_station.engine.ports import Trails
 from base_station.replay.playback import Playback
+from base_station.replay.record_gaps import RecordGap
 from base_station.replay.session import ReplaySession, ReplayWindow
-from base_station.replay.unrecorded import RecordGap
 from base_station.storage.db.known_people import person_lookup
 from base_station.views.wire import GapView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, SystemClock

@@ -96,7 +96,7 @@ def checked(records: Iterable[Record], folder: Path, from_incident: str) -> list
     for _ in playback.seek(opened_ns(whole, from_incident)):
         pass
     check = VersionCheck(playback, whole[-1][0])
-    return list(iter(check.look, None))
+    return list(iter(check.check_next_record, None))
 
 
 def opened_ns(records: Iterable[Record], incident_id: str) -> int:

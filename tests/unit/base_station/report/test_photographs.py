@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> ImportFolder:
 
 @pytest.fixture
 def bring(folder: ImportFolder) -> Bring:
-    def bring_in(seconds: int) -> ImportRow:
+    def import_file(seconds: int) -> ImportRow:
         """A photograph of so many seconds after the first."""
         t_s = TAKEN_S + seconds
         with folder.incoming() as path:
@@ -43,7 +43,7 @@ def bring(folder: ImportFolder) -> Bring:
             t_ns=in_ns(TAKEN_S + 3600), by="chief",
         )  # fmt: skip
 
-    return bring_in
+    return import_file
 
 
 def test_photographs_are_by_time_with_place_and_importing_user(

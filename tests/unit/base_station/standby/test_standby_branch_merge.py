@@ -68,8 +68,8 @@ class Leading:
             lambda: "b" if self.there else None,
         )
 
-    def look(self) -> None:
-        self._merging.look(self.stop)
+    def run_round(self) -> None:
+        self._merging.run_round(self.stop)
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         assert by == STATION_ID
@@ -107,7 +107,7 @@ def leading_with(folder: Path, records: Sequence[Record]) -> Leading:
 
 def looking_until(leading: Leading, waits: Callable[[], bool]) -> Thread:
     """A round that has reached that point."""
-    looking = Thread(target=leading.look)
+    looking = Thread(target=leading.run_round)
     looking.start()
     until(waits)
     return looking
@@ -131,15 +131,15 @@ ALL = [(backfilled_key("u", EVENT.suffix), b"%d" % number) for number in range(U
 def test_messages_of_units_are_added_as_late_ones_and_once(
     leading: Leading, tmp_path: Path
 ) -> None:
-    leading.look()
+    leading.run_round()
     assert leading.brought == ALL
     assert parts(tmp_path) == []
-    leading.look()
+    leading.run_round()
     assert leading.brought == ALL
 
 
 def test_actions_of_people_are_recorded_and_not_done(leading: Leading) -> None:
-    leading.look()
+    leading.run_round()
     apart, report = leading.done
     assert apart == DoneApart("b", T0 + UNITS, "ada", "CloseIncident i1")
     assert isinstance(report, ReportProblem)
@@ -164,7 +164,7 @@ def test_actions_of_people_are_recorded_and_not_done(leading: Leading) -> None:
 def test_actions_of_people_are_reported_in_words(tmp_path: Path, action: Action, what: str) -> None:
     done = OperatorAction(Header(STATION_ID, 1, 1, 5), "a1", "ada", action)
     leading = leading_with(tmp_path, [(T0, OPERATOR.key(STATION_ID), encode(done))])
-    leading.look()
+    leading.run_round()
     assert leading.done[0] == DoneApart("b", T0, "ada", what)
 
 
@@ -172,12 +172,12 @@ def test_station_stopped_meanwhile_takes_the_whole_branch_later(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.stop_after = 1
-    leading.look()
+    leading.run_round()
     assert len(leading.brought) < UNITS
     assert len(parts(tmp_path)) == 1
     leading.stop.clear()
     leading.stop_after = 10**9
-    leading.look()
+    leading.run_round()
     assert leading.brought[-UNITS:] == ALL
     assert parts(tmp_path) == []
 
@@ -217,7 +217,7 @@ def test_actions_are_left_to_the_station_that_leads_by_then(
     looking.join()
     assert len(parts(tmp_path)) == 1
     leading.written = True
-    leading.look()
+    leading.run_round()
     assert parts(tmp_path) == []
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem] * 2
 
@@ -228,16 +228,16 @@ def test_repeated_branch_names_its_actions_once(
 ) -> None:
     with monkeypatch.context() as broken:
         broken.setattr("base_station.standby.branch_merge.mark_merged", lambda *_: None)
-        leading.look()  # its confirmation was lost
+        leading.run_round()  # its confirmation was lost
     if starts_again:
         leading.start()
-    leading.look()
+    leading.run_round()
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem]
 
 
 def test_station_that_does_not_lead_requests_nothing(leading: Leading, tmp_path: Path) -> None:
     leading.there = False
-    leading.look()
+    leading.run_round()
     assert leading.brought == []
     assert len(parts(tmp_path)) == 1
 
@@ -253,7 +253,7 @@ def test_actions_are_recorded_alone_and_the_alarm_follows(
         (T0 + UNITS, *closed_by(STATION_ID)[1:]),
     ]
     leading = leading_with(tmp_path, records)
-    leading.look()
+    leading.run_round()
     assert leading.brought == [(unread, b"of a later version")]
     assert leading.done == []
     assert parts(tmp_path) == []

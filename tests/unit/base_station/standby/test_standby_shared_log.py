@@ -120,7 +120,7 @@ def test_following_log_ends_where_the_disk_refused_and_has_no_gap() -> None:
             disk.room = 100
         kept.append(log.write(t_ns, key, payload))
     assert kept == [True] * 3 + [False] * 6
-    assert (log.problem, log.little_room) == (disk.problem, disk.little_room)
+    assert (log.problem, log.low_disk_space) == (disk.problem, disk.low_disk_space)
     assert log.is_cut_short
     assert disk.kept == events(9)[:3]
     assert log.behind(START, 10**6) == events(9)[:3]

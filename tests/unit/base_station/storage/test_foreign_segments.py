@@ -116,7 +116,7 @@ def test_foreign_file_beside_the_segments_is_left_out(
     assert own_segments(data.log) == (own, {beside: OTHER_LOG})
     assert seconds(data, []) == [*range(40)]
     defects = LogDefects(data.log)
-    while defects.look():
+    while defects.check_next_chunk():
         pass
     assert defects() == (f"{beside.name} is no segment of this log and is left out: {OTHER_LOG}",)
 

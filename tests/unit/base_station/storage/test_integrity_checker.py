@@ -36,7 +36,7 @@ def recorder(tmp_path: Path) -> Iterator[Recorder]:
 
 def looked(check: IntegrityChecker, recorder: Recorder, times: int = 5) -> IntegrityChecker:
     for _ in range(times):
-        check.look(recorder.segments())
+        check.check_next_segment(recorder.segments())
     return check
 
 
@@ -115,13 +115,13 @@ def test_only_records_stepped_at_the_start_are_lacking() -> None:
 
 def test_station_with_missing_records_restarts_when_idle() -> None:
     lacking = StaleState()
-    assert not lacking.can_be_made_good(leads=False, spared=True, in_incident=False)
+    assert not lacking.can_recover(leads=False, spared=True, in_incident=False)
     lacking.note_stepped(100, 200)
     lacking.note_mended(150)
-    assert lacking.can_be_made_good(leads=False, spared=False, in_incident=True)
-    assert lacking.can_be_made_good(leads=True, spared=True, in_incident=False)
-    assert not lacking.can_be_made_good(leads=True, spared=True, in_incident=True)
-    assert not lacking.can_be_made_good(leads=True, spared=False, in_incident=False)
+    assert lacking.can_recover(leads=False, spared=False, in_incident=True)
+    assert lacking.can_recover(leads=True, spared=True, in_incident=False)
+    assert not lacking.can_recover(leads=True, spared=True, in_incident=True)
+    assert not lacking.can_recover(leads=True, spared=False, in_incident=False)
 
 
 def test_records_cut_out_of_a_file_are_missing_though_the_rest_is_readable(

@@ -210,10 +210,10 @@ def test_low_disk_space_is_reported_and_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with recording(tmp_path) as recorder:
-        assert recorder.little_room == ""
+        assert recorder.low_disk_space == ""
     monkeypatch.setattr("base_station.storage.recorder._LITTLE_FREE_BYTES", 1 << 62)
     with recording(tmp_path) as recorder:
-        assert "MB are free for the log" in recorder.little_room
+        assert "MB are free for the log" in recorder.low_disk_space
         assert recorder.problem == ""
 
 

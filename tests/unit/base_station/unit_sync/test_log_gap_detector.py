@@ -59,10 +59,10 @@ class Damaged:
         self.readings += 1
         return self.read()
 
-    def look(self) -> None:
+    def search_for_a_while(self) -> None:
         """Time in which the station's state is saved."""
         for _ in range(20):
-            self.search.look()
+            self.search.search_further()
             self.clock.advance(1.0)
             self.saved_ns = self.clock.utc_ns()
 
@@ -76,26 +76,26 @@ def test_missing_messages_are_marked_once(damaged: Damaged) -> None:
     damaged.log = [one for one in damaged.log if one not in map(spoken, (3, 4, 8))]
     damaged.log.remove(spoken(10, AGENT))
     damaged.damaged = ["1.mcap"]
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.taken_back == [
         {(UNIT, BOOT): (Run(3, 4), Run(8, 8)), (AGENT, BOOT): (Run(10, 10),)}
     ]
-    damaged.look()
+    damaged.search_for_a_while()
     assert len(damaged.taken_back) == 1
 
 
 def test_each_new_damage_is_examined(damaged: Damaged) -> None:
     damaged.damaged = ["1.mcap"]
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.taken_back == []
     damaged.log.remove(spoken(1))
     damaged.damaged = ["1.mcap", "2.mcap"]
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
 
 
 def test_whole_log_is_not_read(damaged: Damaged) -> None:
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.readings == 0
 
 
@@ -103,7 +103,7 @@ def test_check_waits_for_a_state_saved_since(damaged: Damaged) -> None:
     """Messages behind an older one would be missing in it and not in the log."""
     damaged.damaged = ["1.mcap"]
     for _ in range(5):
-        damaged.search.look()
+        damaged.search.search_further()
         damaged.clock.advance(1.0)
     assert damaged.readings == 0
 
@@ -121,7 +121,7 @@ def test_message_counts_as_present_by_any_way_of_reception(
 ) -> None:
     damaged.log[damaged.log.index(spoken(3))] = found
     damaged.damaged = ["1.mcap"]
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.readings == 1
     assert damaged.taken_back == []
 
@@ -134,7 +134,7 @@ def test_file_changed_during_reading_is_read_again(damaged: Damaged) -> None:
 
     damaged.read = breaks_off
     damaged.damaged = ["1.mcap"]
-    damaged.look()
+    damaged.search_for_a_while()
     assert damaged.readings == 2
     assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
 
@@ -150,7 +150,7 @@ def test_long_log_is_read_in_turns(damaged: Damaged) -> None:
 
     damaged.read = slowly
     damaged.damaged = ["1.mcap"]
-    damaged.search.look()
+    damaged.search.search_further()
     damaged.saved_ns = damaged.clock.utc_ns() + NS_PER_S
-    damaged.search.look()
+    damaged.search.search_further()
     assert 0 < len(taken) < 5

@@ -56,7 +56,7 @@ class FakeStation:
         self.probed += 1
         return self.reachable.wait(timeout_s)
 
-    def why_no_link(self) -> str:
+    def link_failure_reason(self) -> str:
         return "nobody is there"
 
 
@@ -156,7 +156,7 @@ def test_link_that_returns_before_its_reason_is_known_is_not_reported_lost(
     asked, answers = threading.Event(), threading.Event()
 
     class Slow(FakeStation):
-        def why_no_link(self) -> str:
+        def link_failure_reason(self) -> str:
             asked.set()
             answers.wait(PATIENCE_S)
             return "nobody is there"

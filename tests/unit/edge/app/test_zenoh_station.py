@@ -77,7 +77,7 @@ def test_a_station_that_moved_is_found_again(station: ZenohStation, network: Net
         station.open_bus()
     station.open_bus()
     assert network.tried[-1] == (MOVED, KNOWN)
-    assert "127.0.0.1 is there but nothing listens on port 3" in station.why_no_link()
+    assert "127.0.0.1 is there but nothing listens on port 3" in station.link_failure_reason()
 
 
 def test_invented_announcements_take_no_known_station_away(

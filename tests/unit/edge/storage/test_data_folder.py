@@ -28,7 +28,7 @@ class NoStation:
     def is_reachable(self, timeout_s: float) -> bool:
         return False
 
-    def why_no_link(self) -> str:
+    def link_failure_reason(self) -> str:
         return "nobody is there"
 
 

@@ -12,7 +12,7 @@ from shared.log_on_change import LogOnChange
 AnyAnnouncement = Announcement | ConsoleAnnouncement
 
 
-class KeptAnnouncement:
+class ServiceAnnouncement:
     """As a context manager it takes the announcement back at the end."""
 
     def __init__(self, log: logging.Logger, failing: str) -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 from mcap.opcode import Opcode
 from mcap.records import Channel
 
+from shared.mcap_log.chunk_writer import McapFile, bytes_of, pack_chunk
 from shared.mcap_log.container import MESSAGE, RECORD
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.identity import SegmentIdentity
-from shared.mcap_log.making import McapFile, bytes_of, made_chunk
 from shared.mcap_log.reading import IntactChunk
 
 _NUMBER = struct.Struct("<H")
@@ -36,7 +36,7 @@ class RebuiltSegment:
         # What it says of its times is outside its checksum, and readers go by it.
         head = chunk.record[: RECORD.size] + _TIMES.pack(start_ns, end_ns)
         record = head + chunk.record[len(head) :]
-        self._mcap.add(made_chunk(record, start_ns, end_ns, len(chunk.data), entries))
+        self._mcap.add(pack_chunk(record, start_ns, end_ns, len(chunk.data), entries))
 
     def finish(self) -> None:
         """Write what makes the file complete."""

@@ -54,7 +54,7 @@ _LEVEL = 1  # of Zstandard: packs positions as small as the usual 3, and sooner
 
 
 @dataclass(frozen=True, slots=True)
-class MadeChunk:
+class PackedChunk:
     """A chunk as it will stand in the file."""
 
     record: bytes  # with opcode and length
@@ -66,9 +66,9 @@ class MadeChunk:
     counts: Mapping[int, int]  # messages, by topic
 
 
-def made_chunk(
+def pack_chunk(
     record: bytes, start_ns: int, end_ns: int, size: int, entries: Mapping[int, Sequence[int]]
-) -> MadeChunk:
+) -> PackedChunk:
     """``entries``: by topic, time and place of each message in the chunk's data."""
     offsets: dict[int, int] = {}
     index = bytearray()
@@ -78,10 +78,10 @@ def made_chunk(
         index += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + entries_bytes, topic, entries_bytes)
         index += struct.pack(f"<{len(of_topic)}Q", *of_topic)
     counts = {topic: len(of_topic) // 2 for topic, of_topic in entries.items()}
-    return MadeChunk(record, start_ns, end_ns, size, bytes(index), offsets, counts)
+    return PackedChunk(record, start_ns, end_ns, size, bytes(index), offsets, counts)
 
 
-class ChunkMaker:
+class ChunkWriter:
     """Schemas, topics and messages of one chunk after the other."""
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class ChunkMaker:
         self._parts.append(payload)
         self.size += 9 + length
 
-    def take(self) -> MadeChunk | None:
+    def take(self) -> PackedChunk | None:
         """Chunk of the records since the last one; None where there was no message."""
         if not self._entries:
             return None
@@ -125,7 +125,7 @@ class ChunkMaker:
             self._start_ns, self._end_ns, len(data), zlib.crc32(data), len(COMPRESSION)
         )
         body = b"".join((head, COMPRESSION, _SIZE.pack(len(packed)), packed))
-        made = made_chunk(
+        made = pack_chunk(
             RECORD.pack(Opcode.CHUNK, len(body)) + body,
             self._start_ns,
             self._end_ns,
@@ -156,7 +156,7 @@ class McapFile:
         if identity.log_id:  # none of a segment of an earlier version
             self.add_metadata(identity.metadata())
 
-    def add(self, chunk: MadeChunk) -> None:
+    def add(self, chunk: PackedChunk) -> None:
         offset = self.file.tell()
         self.file.write(chunk.record)
         index_begin = self.file.tell()
@@ -241,7 +241,7 @@ class McapFile:
         )
 
 
-def _chunk_index(chunk: MadeChunk, offset: int, index_begin: int) -> bytes:
+def _chunk_index(chunk: PackedChunk, offset: int, index_begin: int) -> bytes:
     """With opcode and length."""
     topics = chunk.index_offsets
     entries = np.fromiter(topics.items(), _INDEX_OF_TOPIC, len(topics))

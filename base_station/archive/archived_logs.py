@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from base_station.archive.entry import ENTRY_NAME, decoded_entry, name_in_archive
+from base_station.archive.catalogue import ENTRY_NAME, decoded_entry, name_in_archive
 from base_station.archive.partly_archived import opened_copy, partly_archived
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import LogFeed, RecordSource

@@ -7,8 +7,8 @@ import pytest
 
 from base_station.radio.config import RadioConfig
 from base_station.radio.opus import duration_ns, is_silence
+from base_station.radio.packet_stamper import PacketStamper
 from base_station.radio.sources import Sound
-from base_station.radio.stamping import PacketStamper
 from shared.clock import NS_PER_MS, NS_PER_S
 from tests.rig.tone_pattern import TONE_S, tone_pattern
 

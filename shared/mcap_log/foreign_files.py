@@ -26,7 +26,7 @@ from shared.mcap_log.folder import (
     unnumbered_paths,
 )
 from shared.mcap_log.identity import SegmentIdentity, first_chunk_at, identity_of
-from shared.mcap_log.one_log import log_id_of, segments_of_one_log
+from shared.mcap_log.log_membership import log_id_of, segments_of_one_log
 from shared.mcap_log.segment_file import SegmentFile
 
 LEFT_OUT = "is no segment of this log and is left out"

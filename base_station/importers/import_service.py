@@ -49,7 +49,7 @@ def require_anchor(records: Records, incident: IncidentRow) -> Anchor:
 
 
 @dataclass(frozen=True)
-class ImportDesk:
+class ImportService:
     """Brings files into one incident."""
 
     catalogue: ImportCatalogue
@@ -57,7 +57,7 @@ class ImportDesk:
     anchor: Anchor
     until_ns: int  # end of an incident that is open
 
-    def bring_in(self, path: Path, options: ImportOptions, act: Act) -> str:
+    def import_file(self, path: Path, options: ImportOptions, act: Act) -> str:
         """Keep the incoming file, which is moved, and log it; what is here already stays as it is.
         Gives its id.
 

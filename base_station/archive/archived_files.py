@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from base_station.archive.catalogue import LOG_NAME, RADIO_NAME, CatalogueEntry, name_in_archive
 from base_station.archive.checking import parts_of
-from base_station.archive.entry import LOG_NAME, RADIO_NAME, CatalogueEntry, name_in_archive
 from base_station.archive.store import ArchiveStore
 from base_station.radio.radio_log import RadioLog
 from base_station.storage.imports import ImportFolder

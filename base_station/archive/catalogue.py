@@ -67,7 +67,7 @@ def stored_apart(entry: CatalogueEntry) -> CatalogueEntry:
     return msgspec.structs.replace(entry, files=tuple(files))
 
 
-def leftovers(store: ArchiveStore, entry: CatalogueEntry) -> Sequence[str]:
+def obsolete_files(store: ArchiveStore, entry: CatalogueEntry) -> Sequence[str]:
     """Files of an earlier copy of the incident that are still beside this one."""
     own = {name_in_archive(entry.incident_id, one.stored_name) for one in entry.files}
     own.add(name_in_archive(entry.incident_id, ENTRY_NAME))

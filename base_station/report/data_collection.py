@@ -14,7 +14,7 @@ import msgspec
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of, with_thresholds
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
-from base_station.dispatch.in_words import description
+from base_station.dispatch.description import description
 from base_station.engine.log_feed import LogFeed
 from base_station.replay.assessment.report import with_people
 from base_station.replay.assessment.wearers import wearers
@@ -73,13 +73,13 @@ class ReportSources:
     recorded_until_ns: Callable[[], int]  # where an open incident ends
 
 
-def gather(
+def collect_report_data(
     sources: ReportSources, incident: IncidentRow, on_progress: Progress = lambda _: None
 ) -> ReportContents:
-    return _Gathering(sources, incident).contents(on_progress)
+    return _Collector(sources, incident).contents(on_progress)
 
 
-class _Gathering:
+class _Collector:
     def __init__(self, sources: ReportSources, incident: IncidentRow) -> None:
         self._sources = sources
         self._incident = incident
@@ -248,7 +248,7 @@ class _Gathering:
         about: dict[str, list[Interval]] = {}
         for alarm in self._explained_alarms()[:MOST_TRACES]:
             about.setdefault(alarm.unit_id, []).append(_about(alarm))
-        while sources.defects.look():
+        while sources.defects.check_next_chunk():
             pass  # into all of it: unreadable parts must be in the report
         records = sources.log.records(
             self._window.from_ns, self._window.until_ns, wanted_keys(self._wearings)
