@@ -1,9 +1,10 @@
-"""The live station between its start and its end: builds its parts, and joins them."""
+"""Live station: builds its parts, connects them, and runs until a signal or a restart."""
 
 from __future__ import annotations
 
 import asyncio
 import secrets
+from collections.abc import Sequence
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
 
@@ -19,12 +20,13 @@ from base_station.app.live_parts import LiveParts
 from base_station.app.live_state import LiveState
 from base_station.app.resources import Resources
 from base_station.app.restart_control import Restart, RestartControl
-from base_station.app.start_engine import start_drive
+from base_station.app.start_engine import start_engine
 from base_station.app.startup_console import Watch, serve_while_recovering, startup_application
 from base_station.app.unit_reports import UnitReports
 from base_station.archive.outdated_copies import OutdatedCopies
 from base_station.core.alarms.thresholds import Thresholds
 from base_station.core.state import StationState
+from base_station.core.state.command import Order
 from base_station.engine.engine import StationEngine
 from base_station.engine.liveness import LivenessMonitor
 from base_station.engine.ports import ActionResult, EnginePorts
@@ -59,10 +61,10 @@ from shared.service_manager import ServiceManager
 
 
 class RunningStation:
-    """The parts of a station that depend on each other, in the order in which they are built.
+    """Parts of a station that depend on each other, in the order in which they are built.
 
-    What a part needs only later it gets as a function: "does this station lead" is asked of a side
-    that gets the engine when that has started.
+    A part that depends on a later one receives a function of this class instead of the part:
+    ``_is_leader``, for example, is passed on before the HA mode exists.
     """
 
     def __init__(
@@ -74,9 +76,9 @@ class RunningStation:
         end: ShutdownWatchdog,
         closing: ExitStack,
     ) -> None:
-        """Begins to receive and to step; ``closing`` ends all parts in their order."""
+        """Start to receive and process messages; ``closing`` closes the parts in reverse order."""
         self._resources, self._disk = resources, resources.disk
-        self._announce, self._manager, self._end = announce, manager, end
+        self._announce, self._manager, self._watchdog = announce, manager, end
         self._closing = closing
         self._live = LiveState(thresholds, resources.config.positioning.fuser)
         self._restarts = RestartControl(
@@ -87,27 +89,28 @@ class RunningStation:
         )
         self._crashes = closing.enter_context(ThreadCrashMonitor())
         self._replays = closing.enter_context(ReplayProcesses())
-        self._side = self._new_side()
-        self._limiter = SenderRateLimiter(self._side.feed.offer, self._disk.clock)
+        self._ha_mode = self._new_ha_mode()
+        self._limiter = SenderRateLimiter(self._ha_mode.feed.offer, self._disk.clock)
         self._bans = SenderBans(resources.router.ban, self._disk.clock)
         subscription = self._open_bus()
-        self._reports = UnitReports(resources, self._side)
+        self._reports = UnitReports(resources, self._ha_mode)
         self._forwarders = self._new_forwarders()
-        self._shown = LiveFanOut(resources.hub, self._forwarders)
-        self._downlink = self._new_downlink()
+        self._fan_out = LiveFanOut(resources.hub, self._forwarders)
+        self._command_sender = self._new_command_sender()
         self._archive = automatic_archive(resources, self._replays, self._is_leader)
-        self._outdated = OutdatedCopies(
+        self._outdated_copies = OutdatedCopies(
             ArchivedCopies(self._disk.store), self._archive_view, self._is_leader
         )
         self._radio = self._new_radio()
         self._erasures = self._new_erasure_queue()
         self._plans = PlanReader()
         self._engine = self._start_engine()
-        self._gate = self._side.gate_to(self._engine)
-        # Ends behind the engine: the other station gets all.
+        self._gate = self._ha_mode.gate_to(self._engine)
+        # Closed after the engine has stopped: the other station receives all that the engine wrote.
         self._after_engine = closing.enter_context(ExitStack())
         closing.callback(self._engine.stop)
-        closing.callback(subscription.close)  # first: late records are stepped before the end
+        # Closed before the engine stops, which processes all that was received until then.
+        closing.callback(subscription.close)
         self._start_exchange()
         self._post_processor = self._disk.post_processor(self._replays)
         self._start_work_on_log()
@@ -116,15 +119,15 @@ class RunningStation:
         self._server = new_server(self._parts, self._services, self._on_stop)
 
     def run(self) -> Restart | None:
-        """Serve consoles until a signal comes, or the station is to start anew."""
-        self._side.start(self._gate, self._after_engine)
+        """Serve consoles until a signal; return the restart that was requested, if any."""
+        self._ha_mode.start(self._gate, self._after_engine)
         housekeeping = Housekeeping(self._parts, self._services)
         asyncio.run(serve_until_stopped(self._server, self._on_ready, housekeeping.run))
         return self._restarts.requested
 
-    # ---- the parts
+    # ---- construction of the parts
 
-    def _new_side(self) -> HaMode:
+    def _new_ha_mode(self) -> HaMode:
         resources, disk = self._resources, self._disk
         parts = Parts(
             data=disk.folder.path,
@@ -155,7 +158,7 @@ class RunningStation:
         return Paired(standby, parts) if standby.name else Standalone(parts)
 
     def _open_bus(self) -> Subscription:
-        """Begin to receive from units, and to answer their questions for the time."""
+        """Start to receive from units, and to answer their clock queries."""
         bus, clock = self._resources.bus, self._disk.clock
         subscription = bus.subscribe(f"{ROOT}/**", without_text_of_commands(self._limiter.offer))
         self._links = LivenessMonitor(bus, self._bans.ban, clock)
@@ -177,7 +180,7 @@ class RunningStation:
             ),
         )
 
-    def _new_downlink(self) -> CommandSender:
+    def _new_command_sender(self) -> CommandSender:
         clock = self._disk.clock
         header_factory = HeaderFactory(STATION_ID, secrets.randbits(63), clock)
         return CommandSender(self._resources.bus, header_factory, clock, self._disk.roster.shown)
@@ -202,8 +205,8 @@ class RunningStation:
 
     def _start_engine(self) -> StationEngine:
         saved = self._disk.latest_state()
-        self._stepped_from_ns = saved.t_ns if saved else 0
-        return start_drive(
+        self._applied_from_ns = saved.t_ns if saved else 0
+        return start_engine(
             self._disk.log,
             saved,
             self._engine_ports(),
@@ -216,17 +219,17 @@ class RunningStation:
         """Start erasures, backfill, commands, forwarders, radio and consoles."""
         closing = self._closing
         closing.enter_context(self._erasures)
-        for thread in (self._reports.backfill, self._downlink):
+        for thread in (self._reports.backfill, self._command_sender):
             thread.start()
             closing.callback(thread.close)
         closing.callback(self._forwarders.close)
         self._radio.start()
         closing.callback(self._radio.close)
-        self._shown.start(self._engine)
-        closing.callback(self._side.feed.close)
+        self._fan_out.start(self._engine)
+        closing.callback(self._ha_mode.feed.close)
 
     def _start_work_on_log(self) -> None:
-        """Start what reads the log beside the engine: post-processing, catching up, the archive."""
+        """Start the readers of the log: post-processing, catch-up of the database, the archive."""
         disk, closing = self._disk, self._closing
         records = disk.records
         closing.enter_context(
@@ -243,7 +246,7 @@ class RunningStation:
             announce=self._announce,
             live=self._live,
             restarts=self._restarts,
-            side=self._side,
+            side=self._ha_mode,
             limiter=self._limiter,
             bans=self._bans,
             forwarders=self._forwarders,
@@ -251,18 +254,17 @@ class RunningStation:
             engine=self._engine,
             gate=self._gate,
             erasures=self._erasures,
-            outdated_copies=self._outdated,
+            outdated_copies=self._outdated_copies,
             plans=self._plans,
             replays=self._replays,
             post_processor=self._post_processor,
         )
 
     def _engine_ports(self) -> EnginePorts:
-        """Gives the ports of the engine."""
         return EnginePorts(
-            feed=self._side.feed,
-            log=self._side.log,
-            live=self._shown,
+            feed=self._ha_mode.feed,
+            log=self._ha_mode.log,
+            live=self._fan_out,
             projection=ProjectionFanOut(self._disk.projection, self._forwarders),
             checkpoints=self._disk.checkpoints,
             people=self._disk.roster.known,
@@ -272,7 +274,7 @@ class RunningStation:
             report=self._reports.report,
             linked=lambda: self._links.linked,
             unlinked=lambda: self._links.unlinked,
-            send_orders=lambda orders: self._downlink.report(orders if self._side.leads else ()),
+            send_orders=self._send_orders,
         )
 
     def _startup_console(self) -> AbstractContextManager[Watch]:
@@ -288,40 +290,42 @@ class RunningStation:
     # ---- callbacks between the parts
 
     def _on_replayed(self, place: tuple[int, int], state: StationState) -> None:
-        """Takes the state that the log gives, before the engine runs."""
+        """Receive the state that was replayed from the log, before the engine runs."""
         self._live.begin(state)
-        self._restarts.stale.note_stepped(self._stepped_from_ns, place[0])
+        self._restarts.stale.note_stepped(self._applied_from_ns, place[0])
         self._disk.clock.hold_while(lambda: not self._is_leader() or self._live.is_in_incident())
-        self._side.begin(place, state)
+        self._ha_mode.begin(place, state)
 
     def _stop_server(self) -> None:
         self._server.stop()
 
     def _on_ready(self, line: str) -> None:
-        """Consoles can connect."""
+        """Report that consoles can connect."""
         self._announce(line)
         self._manager.ready()
 
     def _on_stop(self) -> None:
         resources = self._resources
-        self._post_processor.close()  # a request that waits for it would keep the station
-        self._end.begin(lambda: resources.recorder.unsaved_loss, resources.router.close)
+        self._post_processor.close()  # a request that waits for a result would delay the stop
+        self._watchdog.begin(lambda: resources.recorder.unsaved_loss, resources.router.close)
 
     def _facts(self) -> StationFacts:
-        """The engine asks once a second, with a full disk and at a standby too; hanging, it does
-        not, and the service manager notices.
+        """Health of the station, read by the engine once a second.
+
+        Each call is also the sign of life for the service manager: an engine that hangs makes none,
+        while a full disk or the role of a standby does not stop them.
         """
         self._manager.working()
         others = (
             *(self._erasures, self._disk.check, self._restarts.stale, self._crashes),
             self._radio,
-            self._outdated,
+            self._outdated_copies,
             *(() if self._archive is None else (self._archive,)),
         )
         return health_facts(
             self._resources,
             self._disk.clock,
-            self._side,
+            self._ha_mode,
             others,
             missing=self._reports.backfill.gone,
             forwarders=self._forwarders.views(),
@@ -336,34 +340,41 @@ class RunningStation:
         return None if self._archive is None else self._archive.keeps_audio_since_ns()
 
     def _is_leader(self) -> bool:
-        return self._side.leads
+        return self._ha_mode.leads
 
     def _has_peer(self) -> bool:
-        ha_status = self._side.ha_status
+        ha_status = self._ha_mode.ha_status
         return ha_status is not None and ha_status.view().other_role != ""
 
     def _has_standby(self) -> bool:
-        ha_status = self._side.ha_status
+        ha_status = self._ha_mode.ha_status
         return ha_status is not None and ha_status.view().in_step
 
     def _submit_if_leader(self, by: str, action: Action) -> Future[ActionResult] | None:
-        """None at a standby, whose actions come from the other's log."""
-        return self._engine.submit(by, action) if self._side.leads else None
+        """Submit an action; None at a standby, which receives actions by the leader's log."""
+        return self._engine.submit(by, action) if self._ha_mode.leads else None
 
     def _note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
         self._engine.note_external(markers, removed)
+
+    def _send_orders(self, orders: Sequence[Order]) -> None:
+        """Send unanswered orders to units; a standby sends none."""
+        self._command_sender.report(orders if self._ha_mode.leads else ())
 
     def _request_checkpoint(self) -> None:
         self._engine.save_soon()
 
     def _waiting_erasures(self) -> list[WaitingErasure]:
-        """Erasures that another station has to order: this one does not lead."""
+        """Erasures requested at this standby, which the leader has to carry out."""
         return [
             WaitingErasure(one.forgetting_id, one.kind, one.subject_id)
             for one in self._erasures.own_waiting()
         ]
 
-    def _erase_for_peer(self, what: str) -> None:
-        """Forget a person or incident that the other station has forgotten: this log has it too."""
-        kind, _, one = what.partition(" ")
-        self._erasures.add(BY_OTHER_STATION, kind, one, from_peer=True)
+    def _erase_for_peer(self, subject: str) -> None:
+        """Erase a person or incident that the other station has erased, from this log too.
+
+        ``subject``: "person ID" or "incident ID".
+        """
+        kind, _, subject_id = subject.partition(" ")
+        self._erasures.add(BY_OTHER_STATION, kind, subject_id, from_peer=True)

@@ -18,7 +18,7 @@ from base_station.storage.checkpoints import SavedState
 _log = logging.getLogger(__name__)
 
 
-def start_drive(
+def start_engine(
     log: LogFeed,
     saved: SavedState | None,
     ports: EnginePorts,
