@@ -12,7 +12,7 @@ import pytest
 from base_station.core.positioning.fixes import BEFORE_SITE
 from base_station.fusion.gnss.fix_faults import FIX_FAULTS
 from tests.conftest import PROJECT_ROOT
-from tests.contracts.test_coded_texts import LANGUAGES, MESSAGE
+from tests.rig.console_catalogues import LANGUAGES, MESSAGE
 
 _STATION = PROJECT_ROOT / "base_station"
 _UNSETTLED = "heading not settled"  # its words are those of the tracker, up to the colon

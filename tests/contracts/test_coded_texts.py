@@ -17,8 +17,8 @@ from base_station.api import posted_samples
 from base_station.api.forms import Form
 from base_station.api.routes import ROUTERS
 from tests.conftest import PROJECT_ROOT
+from tests.rig.console_catalogues import LANGUAGES, MESSAGE
 
-LANGUAGES = ("en", "de", "fr")
 PARTS = (
     "problems",
     "unit_faults",
@@ -33,7 +33,6 @@ PARTS = (
     ),
 )
 _CATALOGUES = PROJECT_ROOT / "base_station/console/src/language"
-MESSAGE = re.compile(r'^  "([^"]+)":\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 _BRACE = re.compile(r"\{(\w*)|\}")
 
 

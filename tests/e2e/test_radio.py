@@ -18,8 +18,8 @@ from base_station.radio.opus import SAMPLE_HZ
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.played_station import PlayedStation
+from tests.e2e.replay_page import begin_replay
 from tests.e2e.stage import ANSWERS, PAST, Stage
-from tests.e2e.test_replay_display import begin_replay
 from tests.rig.tone_pattern import tone_pattern
 from tests.rig.waiting import PATIENCE_S, until
 

@@ -6,12 +6,13 @@ import re
 
 import msgspec
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import expect
 
 from base_station.views.wire import GapView, Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import close, menu, strip
 from tests.e2e.layout_checks import flaws
+from tests.e2e.replay_page import begin_replay
 from tests.e2e.stage import SCREENS, Stage
 
 MISSING = (
@@ -28,14 +29,6 @@ def over_a_day(*flaws: str) -> Snapshot:
     start_ms = shown.replay.start_ms - 24 * 60 * scenes.MINUTE_MS
     replay = msgspec.structs.replace(shown.replay, start_ms=start_ms, flaws=flaws)
     return msgspec.structs.replace(shown, replay=replay)
-
-
-def begin_replay(page: Page) -> Locator:
-    """Beside what is live."""
-    menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
-    banner = page.get_by_role("region", name="Replay")
-    expect(banner).to_contain_text("Recorded, not live")
-    return banner
 
 
 def test_live_banner_on_a_phone_keeps_the_name_of_the_replay(stage: Stage) -> None:

@@ -4,14 +4,11 @@ whichever leads.
 
 from __future__ import annotations
 
-import json
 import time
 import urllib.error
 import urllib.request
 from contextlib import ExitStack
-from http import HTTPStatus
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -20,10 +17,11 @@ from shared.enrolment import Holder
 from shared.errors import BusError
 from tests.bench.standby.station_of_pair import Place, Station
 from tests.rig.lossy_link import CLEAN, DARK, LossyLink
-from tests.rig.pacing import PATIENCE_S, wait_until
+from tests.rig.pacing import wait_until
+from tests.rig.station_requests import PASSWORD, as_admin, call, log_in, role
 from tests.rig.two_stations import two_stations
 
-PASSWORD, ANOTHER = "correct horse battery", "another horse battery"
+ANOTHER = "another horse battery"
 REMOVED, DEMOTED, RENEWED, ENDED, KEPT = "removed", "demoted", "renewed", "ended", "kept"
 USERS = (REMOVED, DEMOTED, RENEWED, ENDED, KEPT)
 COPIED_S = 3.0  # accounts are copied once a second
@@ -76,49 +74,6 @@ BANNED: dict[str, tuple[str | None, str | None]] = {
     ENDED: (None, None),
     KEPT: ("commander", "commander"),
 }
-
-
-def as_admin(at: Station) -> dict[str, str]:
-    return {"Cookie": at.place.call(at.logged_in).cookie}
-
-
-def log_in(at: Station, name: str, password: str = PASSWORD) -> dict[str, str]:
-    body = json.dumps({"username": name, "password": password}).encode()
-    headers = {"Content-Type": "application/json", "Origin": at.url}
-
-    def post() -> dict[str, str]:
-        request = urllib.request.Request(
-            f"{at.url}/api/v1/login", method="POST", data=body, headers=headers
-        )
-        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
-            return {"Cookie": answer.headers["set-cookie"].partition(";")[0]}
-
-    return at.place.call(post)
-
-
-def call(at: Station, who: dict[str, str], method: str, path: str, body: Any = None) -> Any:
-    request = urllib.request.Request(  # our own station's address
-        f"{at.url}/api/v1{path}",
-        method=method,
-        data=None if body is None else json.dumps(body).encode(),
-        headers={"Content-Type": "application/json", "Origin": at.url} | who,
-    )
-
-    def send() -> Any:
-        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
-            reported = answer.read()
-        return json.loads(reported) if reported else None
-
-    return at.place.call(send)
-
-
-def role(at: Station, who: dict[str, str]) -> str | None:
-    try:
-        return str(call(at, who, "GET", "/me")["role"])
-    except urllib.error.HTTPError as error:
-        if error.code != HTTPStatus.UNAUTHORIZED:
-            raise
-        return None
 
 
 def assert_shut_out(at: Station, people: People) -> None:

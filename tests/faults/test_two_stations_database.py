@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests.bench.standby.station_of_pair import Place, Station
-from tests.faults.test_two_stations_access import as_admin, call, log_in, role
 from tests.rig.pacing import wait_until
+from tests.rig.station_requests import as_admin, call, log_in, role
 from tests.rig.two_stations import two_stations
 
 USER, PASSWORD = "mia", "correct horse battery"

@@ -24,8 +24,7 @@ from shared.clock import SystemClock
 from shared.mcap_log import read_log
 from tests.rig.erasure_scenario import names_in, stored_in
 from tests.rig.live_station import make_pipeline
-
-ARCHIVE = Path(__file__).parent / "data_folder" / "folder.tar.xz"
+from tests.rig.older_data_folder import ARCHIVE
 
 
 def test_log_of_older_version_replays_to_same_decisions(tmp_path: Path) -> None:

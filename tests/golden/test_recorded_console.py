@@ -12,39 +12,33 @@ import msgspec
 import pytest
 
 from base_station.engine.log_feed import FolderFeed
-from base_station.engine.ports import Trails
 from base_station.replay.playback import Archive
-from base_station.replay.player import Player
 from base_station.replay.recomputed_player import RecomputedPlayer
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.known_people import KnownPerson
 from base_station.views.answer import to_ms
-from base_station.views.wire import ReplayView, Snapshot, TrailPoint
+from base_station.views.wire import Snapshot
 from shared.channels import OPERATOR, POSITION, Qos, backfilled_key
 from shared.codec import decode, encode
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, is_derived
 from shared.messages import OperatorAction, Sighting, SightingKind
 from shared.messages.pins import PlaceBeacon, RemovePin, SetMeeting
 from shared.messages.station import CloseIncident, ReportProblem
-from tests.golden.test_replay_equals_live import incident
 from tests.rig import message_factory
 from tests.rig.console_log import reader, with_console
+from tests.rig.eventful_incident import incident
 from tests.rig.live_station import LiveStation, Screen, make_pipeline
 from tests.rig.round_walk import Walk
+from tests.rig.shown_replay import VIEW, people, plain, shown_at
 from tests.rig.station_script import Record, Script
 
-VIEW = ReplayView("i1", 0, 0, 0, 1.0, playing=False)
 FINE = 1e-3  # of whatever unit: numbers are recorded to a millimetre
 
 
 def station_people(person_id: str) -> KnownPerson:
     """As ``LiveStation`` knows them."""
     return KnownPerson(f"person {person_id}", photo_url=f"/photos/{person_id}")
-
-
-def people(person_id: str) -> KnownPerson:
-    return KnownPerson(f"Name of {person_id}", "blue", "leader", f"/photos/{person_id}")
 
 
 def eventful() -> Script:
@@ -96,26 +90,6 @@ def players(records: Sequence[Record], folder: Path) -> tuple[RecordedPlayer, Re
         RecordedPlayer(reader(records), Screen(), people),
         RecomputedPlayer(archive, Screen(), people),
     )
-
-
-def shown_at(player: Player, t_ns: int) -> tuple[dict[str, Any], dict[str, list[TrailPoint]]]:
-    for _ in player.seek(t_ns):
-        pass
-    assert not player.is_lost
-    return plain(*player.snapshot(VIEW))
-
-
-def plain(snapshot: Snapshot, trails: Trails) -> tuple[dict[str, Any], dict[str, list[TrailPoint]]]:
-    shown = msgspec.json.decode(msgspec.json.encode(snapshot))
-    del shown["seq"]
-    shown["alarms"].sort(key=lambda alarm: alarm["alarm_id"])  # a console has an order of its own
-    for unit in shown["units"]:
-        unit["alarms"].sort()
-    drawn = {
-        unit_id: msgspec.json.decode(points, type=list[TrailPoint])
-        for unit_id, points in trails.items()
-    }
-    return shown, drawn
 
 
 def is_same(one: Any, other: Any) -> bool:

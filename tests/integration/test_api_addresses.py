@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import httpx
 import pytest
-from fastapi.routing import APIRoute
 
 from base_station.accounts.principals import Role
-from base_station.api.routes import ROUTERS
+from tests.rig.api_addresses import addresses
 from tests.rig.in_process_station import ORIGIN, InProcessStation
 
 GUESSED = "nmae"  # a parameter of no route
 INCIDENT = "/incidents/x"
-
-
-def addresses() -> Iterator[tuple[str, str]]:
-    """Method and path of every route, with something in place of what is variable."""
-    for router in ROUTERS:
-        for route in router.routes:
-            if isinstance(route, APIRoute):
-                path = route.path.replace("{", "").replace("}", "")
-                yield from ((method, path) for method in sorted(route.methods or ()))
 
 
 async def refusal(client: httpx.AsyncClient, method: str, path: str) -> str:

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from base_station.accounts.principals import Role
-from tests.integration.test_api_addresses import addresses
+from tests.rig.api_addresses import addresses
 from tests.rig.in_process_station import ORIGIN, InProcessStation
 
 GENERATED, OWN = "1a2b-3c4d-5e6f", "correct horse battery"

@@ -7,7 +7,6 @@ import shutil
 import threading
 from collections import namedtuple
 from collections.abc import AsyncIterator
-from contextlib import closing
 from pathlib import Path
 
 import httpx
@@ -16,7 +15,6 @@ import pytest_asyncio
 from typer.testing import CliRunner, Result
 
 from base_station.accounts.principals import Role
-from base_station.app.factories import project_whole_log
 from base_station.cli import app
 from base_station.core.person_references import reference_to
 from base_station.importers import requests
@@ -24,48 +22,23 @@ from base_station.importers.interface import MOST_BYTES
 from base_station.importers.requests import ImportAction, ImportRequests
 from base_station.storage import request_files
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.records import Records
-from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
 from shared.channels import OPERATOR
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 from shared.errors import StoreError, UserError
-from shared.geo import Anchor
-from shared.mcap_log import SegmentWriter, read_log
+from shared.mcap_log import read_log
 from shared.messages import STATION_ID
-from shared.messages.station import Assign, CloseIncident, RemoveImport, SetAnchor
-from tests.rig.imported_files import exif_time, line, logged, write_gpx, write_photo
+from shared.messages.station import RemoveImport
+from tests.rig.imported_files import exif_time, line, write_gpx, write_photo
 from tests.rig.in_process_station import InProcessStation
-from tests.rig.round_walk import Walk
 from tests.rig.waiting import until
-
-ANCHOR = Anchor(52.0, 4.0, 0.0, 0.3)
-ADA = KnownPerson("Ada Vos", "Engine 1", "")
+from tests.rig.walked_folder import ANCHOR, new_folder
 
 
 def muster(*arguments: str | Path) -> Result:
     return CliRunner().invoke(app, list(map(str, arguments)))
-
-
-def new_folder(folder: Path, name: str, incident_s: int = 60) -> Path:
-    """Folder of a station with one closed incident of a person who walks a round."""
-    walk = Walk("FF-01")
-    script = walk.script
-    script.act(SetAnchor(ANCHOR.lat_deg, ANCHOR.lon_deg, ANCHOR.height_m, ANCHOR.rotation_rad))
-    script.act(Assign("FF-01", "ada0"))
-    walk.start("FF-01")
-    walk.go(incident_s)
-    script.act(CloseIncident("i1"))
-    records = logged(script)
-    with closing(SegmentWriter(folder / "log")) as log:
-        for t_ns, key, payload in records:
-            log.write(t_ns, key, payload.replace(b"i1", name.encode()))
-    with Store(folder / "station.sqlite") as store:
-        project_whole_log(store, folder / "log", lambda _: None)
-        Roster(store, SystemClock()).add_unknown_people({"ada0": ADA})
-    return folder
 
 
 @pytest.fixture(scope="module")

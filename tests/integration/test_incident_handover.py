@@ -22,8 +22,8 @@ from base_station.storage.db.store import Store
 from base_station.storage.imports import import_id_of
 from shared.clock import NS_PER_MS, NS_PER_S, SystemClock
 from shared.mcap_log import SegmentWriter, audio_topic
-from tests.integration.test_imports import new_folder
 from tests.rig.imported_files import exif_time, line, write_gpx, write_photo
+from tests.rig.walked_folder import new_folder
 
 TAC = "Tac-1"
 PACKETS = 300  # of 20 ms

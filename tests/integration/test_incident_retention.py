@@ -16,8 +16,8 @@ from base_station.storage.db.store import Store
 from base_station.storage.db.window import EVER
 from shared.clock import SystemClock
 from shared.mcap_log import read_log
-from tests.golden.test_older_data_folder import ARCHIVE
 from tests.rig.in_process_station import InProcessStation
+from tests.rig.older_data_folder import ARCHIVE
 from tests.rig.station_command import Command
 from tests.rig.waiting import until
 

@@ -15,9 +15,10 @@ def digest() -> str:
     from base_station.storage.db.known_people import person_lookup  # noqa: PLC0415
     from base_station.views.station import StationFacts, snapshot  # noqa: PLC0415
     from tests.golden import test_pins_replay, test_replay_equals_live  # noqa: PLC0415
+    from tests.rig.eventful_incident import incident  # noqa: PLC0415
 
     reported = hashlib.sha256()
-    everything = test_replay_equals_live.incident()
+    everything = incident()
     for records in (
         test_replay_equals_live.logged(everything),
         test_pins_replay.logged(test_pins_replay.reported()),

@@ -14,9 +14,9 @@ from edge.app.jit_warmup import compile_trackers
 from shared.errors import LogError
 from shared.mcap_log import segment_paths
 from shared.messages.station import Assign, CloseIncident, OpenIncident
-from tests.integration.archive.test_copying import note_segments
 from tests.rig.archived_station import muster, refusal, succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
+from tests.rig.noted_segments import note_segments
 from tests.rig.reported_incident import write_log
 from tests.rig.retracked_incident import write_incident
 from tests.rig.station_script import Script

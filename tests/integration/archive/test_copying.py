@@ -18,16 +18,15 @@ from base_station.cli import app
 from base_station.engine.log_feed import FolderFeed
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import AlarmRow
-from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
-from base_station.storage.segment_index import segment_row
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import ArchiveError, UserError
-from shared.mcap_log import SegmentReader, SegmentWriter, segment_paths
+from shared.mcap_log import SegmentWriter, segment_paths
 from shared.messages.station import CloseIncident
 from tests.rig.archived_station import muster, refusal, succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
+from tests.rig.noted_segments import note_segments
 from tests.rig.station_script import START_NS, Script
 
 
@@ -89,15 +88,6 @@ def test_bucket_without_rights_is_reported(
     assert "make the bucket" in refusal("archive", "list", "s3://no-such-bucket/x")
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://192.0.2.1:1")
     assert "192.0.2.1" in refusal("archive", "list", address), "names of people are encrypted"
-
-
-def note_segments(store: Store, log: Path) -> None:
-    """As a station does when it begins a segment."""
-    rows = []
-    for path in segment_paths(log):
-        with SegmentReader(path) as segment:
-            rows.append(segment_row(segment.info()))
-    Records(store, SystemClock()).put_segments(rows)
 
 
 def test_complete_copy_is_not_replaced_after_loss_of_the_log(data: Path, tmp_path: Path) -> None:

@@ -24,9 +24,9 @@ from base_station.storage.imports import ImportFolder
 from shared.clock import NS_PER_S, SystemClock
 from shared.mcap_log import LogRecord, SegmentReader, SegmentWriter, segment_paths
 from shared.messages.station import CloseIncident
-from tests.integration.archive.test_copying import note_segments
 from tests.rig.archived_station import succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
+from tests.rig.noted_segments import note_segments
 from tests.rig.station_command import Browser, Command
 from tests.rig.station_script import START_NS, Script
 from tests.rig.waiting import until

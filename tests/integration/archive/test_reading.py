@@ -26,13 +26,13 @@ from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import ArchiveError
 from shared.mcap_log import segment_paths
-from tests.golden.test_recorded_console import people, shown_at
 from tests.rig.archived_station import WALKED_S, succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
 from tests.rig.console_client import Api
 from tests.rig.counting_store import CountingStore
 from tests.rig.live_station import Screen
 from tests.rig.served_station import snapshot
+from tests.rig.shown_replay import people, shown_at
 from tests.rig.station_command import Browser, Command
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until

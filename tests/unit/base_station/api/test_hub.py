@@ -16,6 +16,7 @@ from base_station.engine.ports import Trails
 from base_station.views.wire import Delta, HealthView, Snapshot, UnitView
 from shared.errors import StoreError
 from tests.e2e import scenes
+from tests.rig.applied_delta import patched
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
@@ -106,12 +107,6 @@ class ShownPage:
 
     def confirm(self, client: PacedClient) -> None:
         client.note_shown(self._count)
-
-
-def patched(before: Any, change: Any) -> Any:
-    if not isinstance(before, dict) or not isinstance(change, dict):
-        return change
-    return {**before, **{name: patched(before[name], value) for name, value in change.items()}}
 
 
 @pytest.fixture

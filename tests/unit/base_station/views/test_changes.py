@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from base_station.views.changes import UnitChanges, merged
 from base_station.views.wire import Delta, FieldDelta, PinView, UnitView
 from tests.e2e import scenes
-from tests.unit.base_station.api.test_hub import patched
+from tests.rig.applied_delta import patched
 
 UNIT = scenes.unit(0)
 

@@ -12,7 +12,7 @@ from base_station.replay.assessment.report import (
     with_people,
 )
 from base_station.replay.assessment.tables import print_report
-from tests.unit.base_station.replay.assessment.test_assessment_report import assessed, shown
+from tests.rig.assessed_unit import assessed, shown
 
 
 @pytest.mark.parametrize("name", ["Ada [/] [bold]B[/bold]", ":fire: Ada", "[link=x]Ada"])
