@@ -133,7 +133,7 @@ class ArchiveConfig:
 
 @dataclass(frozen=True, slots=True)
 class RetentionConfig:
-    """For how long the station keeps what it knows of people (docs/security.md)."""
+    """Retention of personal data (docs/security.md)."""
 
     incident_days: Annotated[float, Within(1.0, 36_500.0)]  # closed for longer: erased
 

@@ -31,7 +31,7 @@ class Passwords:
         self._unknown_user_hash = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:
-        """UserError where it is too short to be one, or longer than what is read at a login."""
+        """Raises UserError if it is too short, or longer than the limit of a login."""
         if len(password) < MIN_PASSWORD:
             raise UserError(
                 coded(

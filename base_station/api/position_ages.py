@@ -22,7 +22,7 @@ class PositionAges:
         self.sum_s = 0.0
 
     def observe(self, delta: Delta) -> None:
-        """Count the positions of linked units that are newer than what was published of them."""
+        """Count the positions of linked units that are newer than the published ones."""
         for unit in delta.units:
             position = unit.position
             if position is None or unit.link != "live":

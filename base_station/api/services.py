@@ -142,7 +142,7 @@ class Services(LoginServices):
 
 
 def audit_given_out(station: Services, by: str, kind: str, what: str) -> None:
-    """Note in the audit what is given out next.  Problem 503 where it does not take that."""
+    """Enter the data that is given out next in the audit.  Problem 503 if that fails."""
     try:
         station.records.audit(by, kind, what)
     except StoreError as error:

@@ -106,7 +106,7 @@ class _StartupServer:
 
     def __init__(self, app: ASGIApp, listening: socket.socket, http: HttpConfig) -> None:
         self._server = ConsoleServer(app, listening.dup(), http.certificate, http.private_key)
-        # Pending work, as a TLS handshake, ends with the loop, which is none of this thread.
+        # Pending work, such as a TLS handshake, ends with the loop, which runs in another thread.
         self._runner = asyncio.Runner(loop_factory=asyncio.new_event_loop)
         self._loop = self._runner.get_loop()
         self._started = Event()

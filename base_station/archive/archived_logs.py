@@ -22,7 +22,7 @@ from shared.clock import NS_PER_S
 from shared.errors import ArchiveError
 from shared.mcap_log import SegmentInfo
 
-LATE_NS = 3600 * NS_PER_S  # so long after its closing a timeline asks for what journals brought
+LATE_NS = 3600 * NS_PER_S  # a timeline includes backfilled data until this time after the closing
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
     damage: tuple[str, ...] = ()  # unreadable parts of the station's log, in words
 
     def file(self, name: str) -> ArchivedFile:
-        """Raises ArchiveError where it has none of the name."""
+        """Raises ArchiveError where the entry has no file of this name."""
         for one in self.files:
             if one.name == name:
                 return one

@@ -93,7 +93,7 @@ class _CopySource:
 
 
 class _LogGoneError(ArchiveError):
-    """A copy cannot be made again; what the archive has must not be replaced by less."""
+    """A copy cannot be made again: the log is gone, and the archived copy must stay."""
 
 
 class ArchiveCopier:
@@ -150,7 +150,7 @@ class ArchiveCopier:
             if there is not None and not self._has_log(incident):
                 subjects = erased_in(self._archive, there, self._store)
                 if not subjects and self._copies.is_outdated_by_erasure(incident.incident_id):
-                    return self._keep(there)  # it has none of those who were erased
+                    return self._keep(there)  # nobody in it was erased since
                 if not subjects:
                     raise _LogGoneError(
                         f"{incident.incident_id} has newer data than its copy in "
@@ -183,7 +183,7 @@ class ArchiveCopier:
     def _redacted(
         self, there: CatalogueEntry, subjects: ErasedSubjects, scratch: Path
     ) -> _CopySource:
-        """The copy itself; what is known since is not in it."""
+        """The copy itself, without data that came after it was made."""
         try:
             log = redacted_log(self._archive, there, subjects, scratch / "redacted")
         except CopyIncompleteError as error:

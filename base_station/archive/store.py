@@ -30,11 +30,11 @@ class ArchiveStore(Protocol):
         ...
 
     def size(self, name: str) -> int | None:
-        """None: there is none of the name."""
+        """None: there is no object of this name."""
         ...
 
     def read_all(self, name: str) -> bytes | None:
-        """A small file, by one request; None: there is none of the name."""
+        """Content of a small object, by one request; None: there is no object of this name."""
         ...
 
     def read(self, name: str, begin: int, end: int) -> bytes:

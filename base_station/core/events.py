@@ -140,7 +140,7 @@ UTC_MAX_NS = 2**62  # the year 2116
 
 
 def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
-    """The event that a log record stands for; never raises for what a sender may do."""
+    """Decode a log record to its event; never raises, whatever a sender has sent."""
     try:
         unit_id, channel = parse_key(key)
         message = decode(channel, payload)

@@ -108,7 +108,7 @@ class StationPipeline:
         return Checkpoint(self.state, self._positioning.fuser, saved, pinned).to_bytes()
 
     def step(self, event: StationEvent) -> list[Output]:
-        """Apply an event and return its outputs.  Never raises for what a sender or person does."""
+        """Apply an event and return its outputs.  Never raises, whatever a sender does."""
         state = self.state
         state.t_ns = max(state.t_ns, event.t_ns)
         state.boot_id = state.boot_id or state.t_ns

@@ -58,7 +58,7 @@ _LATER: Any = None  # set by a stage, and read by none before it
 
 
 class MessageUpdate(msgspec.Struct, gc=False):
-    """Message on its way into the state; a stage reads what those before it have set."""
+    """Message on its way into the state; a stage reads the fields that earlier stages have set."""
 
     state: StationState
     event: Received
@@ -126,7 +126,7 @@ class UnitMessages:
     def _apply_to_station(
         self, state: StationState, unit: UnitState, message: Message
     ) -> list[Output]:
-        """Apply what changes more than the unit's own readings."""
+        """Apply changes that go beyond the unit's own readings."""
         match message:
             case Position() if unit.registered:
                 return self._positioning.fuse(state, unit, message)

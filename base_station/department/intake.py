@@ -1,4 +1,4 @@
-"""Takes what stations report from the bus: summaries into the picture, events into the tables."""
+"""Receives reports of stations: summaries go into the picture, events into the tables."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class ReportIntake:
             yield pack(EventReceipt(batch.epoch, reported.last_seq))
 
     def keep_summaries(self) -> None:
-        """Write those that are newer than what is in the tables.  Raises StoreError."""
+        """Write those that are newer than the ones in the tables.  Raises StoreError."""
         rows = []
         for station, pictures in self._picture.all().items():
             newest = max(pictures, key=lambda one: one.received_ns)

@@ -62,7 +62,7 @@ class CallSigns:
         self._words |= {letters.casefold(): word for letters, word in words.items()}
 
     def in_words(self, call_sign: str) -> str:
-        """As a person reads it; what is not known stays as it is."""
+        """Readable form of a call sign; unknown parts are not changed."""
         parts = _PART.findall(call_sign)
         word = self._words.get(parts[0].casefold()) if len(parts) == 2 else None
         return call_sign if word is None or not parts[1].isdigit() else f"{word} {parts[1]}"

@@ -1,4 +1,4 @@
-"""Settings of what comes in from dispatch."""
+"""Settings of the interface for dispatches."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ class ReportParts:
 
 
 def plain(text: str) -> str:
-    """In one line, without what cannot be seen."""
+    """Text in one line, without characters that cannot be seen."""
     return " ".join("".join(one if one.isprintable() else " " for one in text).split())
 
 

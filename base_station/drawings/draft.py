@@ -1,4 +1,4 @@
-"""Draft of a plan: what a file from elsewhere holds, to be looked at before it is set."""
+"""Draft of a plan: content of a file, to be reviewed before it becomes the plan."""
 
 from __future__ import annotations
 

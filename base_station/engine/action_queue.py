@@ -93,7 +93,7 @@ class ActionQueue:
         )
 
     def refuse_waiting(self) -> None:
-        """Refuse what waits still, as the engine has ended."""
+        """Refuse all waiting actions, because the engine has ended."""
         while self._waiting:
             future = self._waiting.popleft()[-1]
             future.set_exception(

@@ -38,7 +38,7 @@ class DeliveryQueue:
         return future
 
     def admit_waiting(self, admit: Callable[[int, str, bytes], Admission]) -> None:
-        """Admit what waits, bring it to the disk at once, then answer."""
+        """Admit the waiting deliveries, flush them to the disk, then answer."""
         results: list[tuple[Future[DeliveryResult], DeliveryResult | None]] = []
         for _ in range(len(self._waiting)):
             messages, future = self._waiting.popleft()
@@ -66,7 +66,7 @@ class DeliveryQueue:
                 future.set_result(kept)
 
     def refuse_waiting(self) -> None:
-        """Refuse what waits still, as the engine has ended."""
+        """Refuse all waiting deliveries, because the engine has ended."""
         while self._waiting:
             future = self._waiting.popleft()[1]
             future.set_exception(StoreError(_STOPPING))

@@ -22,7 +22,7 @@ class DeltaPace:
         self.due_ns = 0
 
     def note_sent(self, now_ns: int, spent_ns: int) -> None:
-        """``spent_ns``: what the delta took of the thread's processor time."""
+        """``spent_ns``: processor time of the thread for the delta."""
         often_ns = min(spent_ns * OFTEN_SHARE, USUAL_NS)
         interval_ns = max(SHORTEST_NS, often_ns, spent_ns * MOST_SHARE)
         late_ns = now_ns - self.due_ns

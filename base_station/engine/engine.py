@@ -129,7 +129,7 @@ class StationEngine:
         self._worker.start()
 
     def stop(self) -> None:
-        """Finish what was taken, and end."""
+        """Finish all events that were taken, and end."""
         self._worker.stop()
         self._ports.feed.wake()
         self._worker.join(STOP_TIMEOUT_S)
@@ -210,7 +210,7 @@ class StationEngine:
         return 0.0
 
     def _run_once(self) -> bool:
-        """Take what came, then do whatever is due; whether anything came."""
+        """Process received events, then all work that is due; True if events were received."""
         clock, due = self._ports.clock, self._due
         wait_ns = min(due.tick_ns, self._delta_pace.due_ns) - clock.monotonic_ns()
         records = self._ports.feed.take(max(wait_ns, 0) / NS_PER_S)

@@ -68,7 +68,7 @@ class LiveFeed:
 
     @property
     def follows(self) -> bool:
-        """False: what comes is from the bus."""
+        """False: records come from the bus."""
         return False
 
     def offer(self, key: str, payload: bytes) -> None:

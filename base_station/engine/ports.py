@@ -80,7 +80,7 @@ class Log(Protocol):
         ...
 
     def flush(self) -> bool:
-        """Bring to the disk what was written so far; whether that was done in time."""
+        """Flush all written records to the disk; True if that was done in time."""
         ...
 
 
@@ -99,7 +99,7 @@ class LiveSink(Protocol):
 
 
 class LiveSource(Protocol):
-    """Source of what a console shows: the live engine, or one replay."""
+    """Source of a console's content: the live engine, or one replay."""
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         """From any thread.  ``deliver`` is called once in the source's thread, in order with the

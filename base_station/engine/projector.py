@@ -1,4 +1,4 @@
-"""Projector: reduces the pipeline's outputs to what the database keeps."""
+"""Projector: reduces the pipeline's outputs to rows of the database."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LAST_MESSAGE_STEP_NS = 5 * NS_PER_S  # the times of units' last messages are sto
 
 
 class Projector:
-    """Collects outputs; ``take`` hands over what they come to."""
+    """Collects outputs; ``take`` returns their projection."""
 
     def __init__(self) -> None:
         self._alarms: list[AlarmChange] = []
@@ -68,7 +68,7 @@ class Projector:
         return bool(self._alarms or self._actions or self._descriptions)
 
     def take(self, t_ns: int) -> Projection | None:
-        """Projection of what was collected; None where nothing changed."""
+        """Projection of the collected outputs; None where nothing changed."""
         parts = (
             self._alarms,
             self._tracks,

@@ -35,7 +35,7 @@ Deliver = Callable[[Sequence[tuple[str, bytes]]], Future[DeliveryResult]]
 
 
 class Receipt(msgspec.Struct, frozen=True):
-    """Counts of what was taken of one post."""
+    """Counts of accepted and refused batches of one post."""
 
     accepted: int  # batches that are in the log now
     repeated: int  # batches that were there already

@@ -38,7 +38,7 @@ class SenderBans:
         self._bans: dict[str, _Ban] = {}
 
     def ban(self, sender_id: str, reason: str) -> None:
-        """``reason``: what it does, as half a sentence behind its name."""
+        """``reason``: half a sentence that follows the name of the unit."""
         now_ns = self._clock.monotonic_ns()
         with self._lock:
             before = self._bans.get(sender_id)

@@ -78,7 +78,7 @@ class IncidentTracks:
     description: str = ""  # of the dispatch; empty: there was none
 
     def named_as(self, description: str) -> IncidentTracks:
-        """With what its trails are in its name."""
+        """File name that includes the kind of the trails."""
         return replace(self, name=f"{self.name}, {description}")
 
     def anchor_or_refuse(self) -> Anchor:

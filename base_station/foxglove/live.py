@@ -16,7 +16,7 @@ _TURN_S = 0.1
 
 
 def follow(log: Path, server: FoxgloveServer, stop: Event) -> None:
-    """Publish what a station writes to its log, until ``stop`` is set.
+    """Publish the records that a station writes to its log, until ``stop`` is set.
 
     It begins with the newest message of each topic of the newest segment.
     """

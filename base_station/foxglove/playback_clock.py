@@ -51,6 +51,6 @@ class PlaybackClock:
         self.at_ns = min(max(t_ns, self._start_ns), self._end_ns)
 
     def set_speed(self, speed: float) -> None:
-        """Times real time; what is no speed at all is left as it was."""
+        """Set the speed as a factor of real time; an invalid value is ignored."""
         if math.isfinite(speed) and speed > 0.0:
             self.speed = min(max(speed, _SPEED_MIN), SPEED_MAX)

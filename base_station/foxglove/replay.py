@@ -46,7 +46,7 @@ class LogReplay:
         self._seek(window_ns[0])
 
     def step(self, now_ns: int) -> bool:
-        """Publish what is due at the monotonic time ``now_ns``; False: there was nothing to do."""
+        """Publish records due at the monotonic time ``now_ns``; False: nothing was due."""
         requests = self._server.requests()
         for request in requests:
             self._apply(request)
@@ -84,7 +84,7 @@ class LogReplay:
         )
 
     def _seek(self, t_ns: int) -> None:
-        """Publish how things stood at ``t_ns``; what follows comes behind it."""
+        """Publish the state at ``t_ns``; later records follow."""
         newest = {
             record[1]: record
             for window_ns, keys in ((_PLAN_LOGGED_NS, {PLAN_TOPIC}), (_LOOKED_BACK_NS, None))

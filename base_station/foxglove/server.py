@@ -104,7 +104,7 @@ class FoxgloveServer:
         self._server.broadcast_playback_state(state)
 
     def forget(self) -> None:
-        """Forget the newest messages: what is published next is of another time."""
+        """Forget the newest messages: the next ones are of another time."""
         self._newest.clear()
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""Interface of an importer, and what a person states about a file."""
+"""Interface of an importer, and the options that a person sets for a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Places of what was brought in, in the incident frame."""
+"""Positions of imported tracks in the incident frame."""
 
 from __future__ import annotations
 

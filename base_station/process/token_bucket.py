@@ -24,7 +24,7 @@ class TokenBucket:
         return True
 
     def spend(self, amount: float, now_ns: int) -> None:
-        """Takes what has been used already, even more than there was; the debt fills up first."""
+        """Take tokens for work already done, even more than there are: the debt is refilled first."""
         self._fill(now_ns)
         self._left -= amount
 

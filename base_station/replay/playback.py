@@ -29,11 +29,13 @@ OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the or
 # From a log time on, until before another one; topics, or None: all that happened and was decided.
 ReadLog = Callable[[int, int | None, Collection[str] | None], Iterator[Record]]
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
-Watch = Callable[[], Callable[[], bool]]  # what it gives tells whether the past was changed since
+Watch = Callable[
+    [], Callable[[], bool]
+]  # the returned function: True if the log was rewritten since
 Decision = FusedPosition | AlarmChange
 
 BURST = 1000  # events
-SAVED_APART = 100_000  # events: some seconds of stepping, which is what going back then takes
+SAVED_APART = 100_000  # events; a seek backwards steps at most so many, in some seconds
 
 
 @dataclass(frozen=True)
@@ -45,11 +47,13 @@ class Archive:
     make_pipeline: MakePipeline
     watch: Watch = lambda: lambda: False
     own: Checkpoints | None = None  # where a playback saves the states that it comes by
-    flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
+    flaws: Callable[[], Sequence[str]] = (
+        tuple  # differences to the original that are known so far, in words
+    )
     # Checks a little more of the log for defects; False: all of it is checked.
     check_next_chunk: Callable[[], bool] = lambda: False
     note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found
-    console: ReadLog | None = None  # what consoles were shown; None: it is decided again
+    console: ReadLog | None = None  # recorded content of consoles; None: it is computed again
     has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
@@ -94,7 +98,7 @@ class Playback:
         self._next: StationEvent | None
         self._at_ns: int
         self._place: tuple[int, int]  # of the last event in the log: its time, and which of that
-        self._saved_ns: int  # until there, what can be saved is
+        self._saved_ns: int  # checkpoints are saved up to there
         self._unsaved: int  # events since
         self._unrecorded: UnrecordedTime | None  # what of it is shown
         self._begin(None)
@@ -176,7 +180,7 @@ class Playback:
         self._next = next(self._events, None)
 
     def _save(self) -> None:
-        """Save a checkpoint where there is none of the time since the last one."""
+        """Save a checkpoint if there is none since the last one."""
         own, since_ns = self._archive.own, self._saved_ns
         self._saved_ns, self._unsaved = self._at_ns, 0
         if own is None or own.is_refused or own.has_any(since_ns, self._at_ns):

@@ -1,4 +1,4 @@
-"""An incident as it is known afterwards, beside what was shown at the time.
+"""Post-processing of an incident: tracks and assessment from all of its data.
 
 The state at the incident's end comes out of the log, by the same pipeline as live, with late data
 of its time; the smoother makes trails from all of it.  The result for a closed incident is kept in

@@ -78,7 +78,7 @@ class RecordedPicture:
         self.now_ms = message.now_ms
 
     def age(self) -> None:
-        """Time goes by of which nothing is recorded: all units look older."""
+        """Advance the time over a gap in the records: all units age."""
         self._changed_units |= dict.fromkeys(self._units)
 
     def delta(

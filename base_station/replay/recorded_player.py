@@ -37,7 +37,7 @@ class RecordedPlayer:
         self._picture = RecordedPicture()
         self._shown_ns: int | None = None  # log time of the frame that is shown
         self._looked_ns: int | None = None  # of the frame behind which it was looked for a gap
-        self._stretch: RecordGap | None = None  # what was found there
+        self._stretch: RecordGap | None = None  # the gap that was found
         self._is_unreadable = False
         self._next = self._following()
 

@@ -79,7 +79,7 @@ class ReplaySession:
         self._recomputed: RecomputedPlayer | None  # once it is needed
         self._version_check: VersionCheck | None = None  # until something was decided again
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
-        self._is_behind = False  # the past goes by as fast as it is read
+        self._is_behind = False  # playback is limited by the speed of reading
         self._is_shown = False  # a picture
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards the fields below

@@ -72,7 +72,7 @@ def _differences(records: Iterable[Record], pipeline: StationPipeline) -> Iterat
 
 
 def _comparable(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Record]:
-    """From what the pipeline has not decided yet up to where something is gone: decisions are
+    """Records that can be compared: undecided by the pipeline, and before any gap.  Decisions are
     numbered from the first event on.
     """
     begun = numbered = pipeline.state.seq

@@ -46,7 +46,7 @@ class ReplyRecord(msgspec.Struct, frozen=True):
 
 
 class UnitFacts(msgspec.Struct):
-    """Facts of one unit; ``doses`` and ``hottest`` by the wearing's place in what was given."""
+    """Facts of one unit; ``doses`` and ``hottest`` by index of the given wearings."""
 
     radio_gaps: list[Interval] = msgspec.field(default_factory=list)
     doses: dict[int, float] = msgspec.field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Corners of a way: what a person walks straight is one line."""
+"""Corners of a way: a straight walk is one line."""
 
 from __future__ import annotations
 

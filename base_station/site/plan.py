@@ -91,7 +91,7 @@ class Plan(msgspec.Struct, frozen=True):
 
 
 def read_plan(geojson: bytes) -> Plan:
-    """Read a plan; raises UserError with the wrong feature and what is expected."""
+    """Read a plan.  Raises UserError with the wrong feature and the expected form."""
     plan, faults = _read_plan(geojson)
     if faults:
         raise UserError(faults[0])

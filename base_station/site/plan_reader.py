@@ -17,7 +17,7 @@ class _Prepared(NamedTuple):
 
 
 class PlanReader:
-    """Remembers the last plan; what it gives is the same whether it does or not."""
+    """Reader with a cache of the last plan."""
 
     def __init__(self) -> None:
         self._last: _Prepared | None = None  # replaced whole: any thread may ask

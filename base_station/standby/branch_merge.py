@@ -39,7 +39,7 @@ _NAMES = ("person_name", "crew", "role", "keeps_incident")  # of an earlier vers
 
 
 class PartServer(RpcServer):
-    """Serves what was set aside: ``apart/names``, ``apart/records``, ``apart/told``."""
+    """Serves branches that were set aside: ``apart/names``, ``apart/records``, ``apart/told``."""
 
     def __init__(self, station: str, bus: Bus, data: Path) -> None:
         self._data = data
@@ -78,7 +78,7 @@ class PartServer(RpcServer):
 
 
 class BranchMerge:
-    """Fetches what the other station has set aside, in rounds, for as long as this one leads."""
+    """Merges the branches that the other station has set aside, while this one leads."""
 
     def __init__(
         self,
@@ -148,7 +148,7 @@ class BranchMerge:
             logger.warning("%d events that %s had set aside are taken", taken, station)
 
     def _take(self, station: str, record: Record) -> DoneApart | None:
-        """Gives what is to be written down of a person."""
+        """Return the note of a person's action; None: the record has none."""
         t_ns, key, payload = record
         try:
             unit_id, channel = parse_key(key)

@@ -111,7 +111,7 @@ class HaController:
 
     @property
     def in_step(self) -> bool:
-        """This standby has what the active station has, but for the last moment."""
+        """True if this standby has all records of the active station but the very last."""
         return self._follower.in_step
 
     def refusal(self) -> str | None:

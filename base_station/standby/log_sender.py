@@ -1,4 +1,4 @@
-"""Answers the other station: where this log comes from, and what stands behind a place in it."""
+"""Log sender: answers the other station with the log's ancestry, and with its next records."""
 
 from __future__ import annotations
 

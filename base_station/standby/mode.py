@@ -100,7 +100,7 @@ class HaMode(Protocol):
         ...
 
     def note_report(self) -> None:
-        """The drive reports what it has of the units' messages."""
+        """Receives the progress of the engine in the units' messages."""
         ...
 
     def problems(self) -> tuple[str, ...]:

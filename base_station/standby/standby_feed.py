@@ -67,7 +67,7 @@ class StandbyFeed:
             self._changed.notify_all()
 
     def lead(self) -> None:
-        """From now on the bus, behind what was delivered before."""
+        """Switch to the bus, after all records that were delivered before."""
         with self._changed:
             self._lead_requested = True
             self._changed.notify_all()

@@ -54,7 +54,7 @@ class LogGapDetector:
         next(self._search)
 
     def _searches(self) -> Iterator[None]:
-        """One for each damage that is new."""
+        """Search once for each new damage."""
         known: set[Hashable] = set()
         while True:
             new = set(self._damaged()) - known

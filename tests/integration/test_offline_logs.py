@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +57,20 @@ def _log(folder: Path, records: list[Record], policy: SegmentPolicy | None = Non
     with closing(SegmentWriter(folder / "log", policy or SegmentPolicy())) as log:
         for record in records:
             log.write(*record)
+
+
+@contextmanager
+def client_of_replay(replaying: Command) -> Iterator[httpx.Client]:
+    """Client of a replay station, logged in with the login that the station has printed."""
+    address = replaying.wait_ready()
+    (line,) = (one for one in replaying.output().splitlines() if "login" in one)
+    _, username, password = (part.split()[0] for part in line.split(": "))
+    with httpx.Client(
+        base_url=f"{address}/api/v1", headers={"Origin": address}, timeout=PATIENCE_S
+    ) as client:
+        login = {"username": username, "password": password}
+        assert client.post("/login", json=login).is_success
+        yield client
 
 
 @pytest.fixture(scope="module")
@@ -401,15 +415,7 @@ def test_replay_leaves_the_folder_unchanged(
         path.chmod(0o555 if path.is_dir() else 0o444)
     flags = ("--data", str(copy), "--http", "127.0.0.1:0")
     with CommandByModes(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
-        address = replaying.wait_ready()
-        (line,) = (one for one in replaying.output().splitlines() if "login" in one)
-        _, username, password = (part.split()[0] for part in line.split(": "))
-        headers = {"Origin": address}
-        with httpx.Client(
-            base_url=f"{address}/api/v1", headers=headers, timeout=PATIENCE_S
-        ) as client:
-            login = {"username": username, "password": password}
-            assert client.post("/login", json=login).is_success
+        with client_of_replay(replaying) as client:
             assert client.get("/incidents/i1/trails?kind=smoothed").is_success
         assert replaying.stop() == 0
     assert {one: one.read_bytes() for one in copy.rglob("*") if one.is_file()} == before
@@ -424,15 +430,7 @@ def test_replay_of_another_stations_folder_has_its_own_login(copy: Path, tmp_pat
         accounts.add_user("replay", "only the others know it", Role.ADMINISTRATOR)
     flags = ("--data", str(copy), "--http", "127.0.0.1:0")
     with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
-        address = replaying.wait_ready()
-        (line,) = (one for one in replaying.output().splitlines() if "login" in one)
-        _, username, password = (part.split()[0] for part in line.split(": "))
-        headers = {"Origin": address}
-        with httpx.Client(
-            base_url=f"{address}/api/v1", headers=headers, timeout=PATIENCE_S
-        ) as client:
-            login = {"username": username, "password": password}
-            assert client.post("/login", json=login).is_success
+        with client_of_replay(replaying) as client:
             assert client.get("/incidents/i1/alarms").is_success
         assert replaying.stop() == 0
     with Store(copy / "station.sqlite") as store:

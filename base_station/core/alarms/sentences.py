@@ -57,7 +57,7 @@ SENTENCES: Mapping[str, str] = {
 
 
 def sentence(code: str, parameters: AlarmParameters) -> str:
-    """The English sentence.  Raises KeyError where the code is none of ``SENTENCES``."""
+    """The English sentence.  Raises KeyError where the code is not in ``SENTENCES``."""
     return SENTENCES[code].format_map(_shown(parameters))
 
 

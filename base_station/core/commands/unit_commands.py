@@ -1,4 +1,4 @@
-"""Commands of the station itself to one unit, which follow from what an operator does."""
+"""Commands of the station itself to one unit, caused by actions of an operator."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def create(
     mayday_seq: int = 0,
     alarm_id: str = "",
 ) -> SentCommand:
-    """Create a command to one unit, with what it is about; its id is the same in a replay."""
+    """Create a command to one unit, with its subject; its id is the same in a replay."""
     command = SentCommand(
         command_id=f"{_PREFIXES[kind]}-{unit.unit_id}-{state.t_ns}",
         kind=kind,

@@ -32,7 +32,7 @@ _KINDS: dict[SightingKind, PinKind] = {
 
 
 def note_sighting(state: StationState, unit: UnitState, sighting: Sighting) -> set[str]:
-    """The units whose past it changes; counts by reason what cannot be used."""
+    """Return the units whose past the sighting changes; unusable ones are counted by reason."""
     t_ns = captured_ns(unit.boots, sighting.header, state.t_ns)
     reason = _rejection_reason(state, unit, sighting, t_ns)
     if reason:

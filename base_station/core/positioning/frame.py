@@ -41,7 +41,7 @@ def moved_by(anchor: Anchor, old: Anchor, taken_by: Anchor | None) -> RigidTrans
 
 
 def reframe(state: StationState, site_id: str, move: RigidTransform2D) -> None:
-    """Paths, trails, pins of a site and what was learnt; the fusers move by themselves."""
+    """Move paths, trails, pins and the learnt building of a site; fusers move by themselves."""
     site = state.sites[site_id]
     shift_m = (move.north_m, move.east_m)
     for history in state.paths_on(site_id).values():

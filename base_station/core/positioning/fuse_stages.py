@@ -22,7 +22,7 @@ _LATER: Any = None  # set by a stage, and read by none before it
 
 
 class PositionUpdate(msgspec.Struct, gc=False):
-    """Position of a unit's own path; a stage reads what those before it have set."""
+    """Position of a unit's own path; a stage reads the fields that earlier stages have set."""
 
     state: StationState
     site: SiteState

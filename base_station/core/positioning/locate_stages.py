@@ -22,7 +22,7 @@ _LATER: Any = None  # set by a stage, and read by none before it
 
 
 class LocationUpdate(msgspec.Struct, gc=False):
-    """Estimate of a unit; a stage reads what those before it have set."""
+    """Estimate of a unit; a stage reads the fields that earlier stages have set."""
 
     state: StationState
     unit: UnitState

@@ -48,7 +48,7 @@ class Delivery(msgspec.Struct):
     expires_ns: int | None = None  # of the repeat; None: as the command
     all_clear_id: str = ""  # of the command that has ended this evacuation for the unit
     signal: Signal = ""  # of LOCATE: signals that the wearer and others perceive; empty: unknown
-    reason_code: TextCode = NO_CODE  # of ``reason``; none of a foreign unit
+    reason_code: TextCode = NO_CODE  # of ``reason``; NO_CODE: from a foreign unit
 
     def set_reason(self, reason: str) -> None:
         """With its code, where it has one."""

@@ -33,7 +33,7 @@ STILL_NS = 300 * NS_PER_S  # a wearer at rest is published at least this often
 class Fault(msgspec.Struct, frozen=True):
     t_ns: int
     text: str
-    code: TextCode = NO_CODE  # of the text; none of an earlier version, or a foreign unit
+    code: TextCode = NO_CODE  # of the text; NO_CODE: from an earlier version, or a foreign unit
 
     @property
     def parameters(self) -> AlarmParameters:
@@ -51,7 +51,7 @@ class GpsUse(msgspec.Struct, frozen=True):
 
     t_ns: int  # of the last one
     reason: str = ""  # why it is not used; empty: it is
-    faulty_since_ns: int | None = None  # since when none of them can be true
+    faulty_since_ns: int | None = None  # start of the time in which all of them are wrong
 
 
 class UnitState(MessageStream):

@@ -38,7 +38,7 @@ class UnitTrails(msgspec.Struct):
         bound(plain)
 
     def show_solved(self, trail: list[TrailStep]) -> None:
-        """Show the past as it was solved with pins, and keep what it is without."""
+        """Show the trail as solved with pins, and keep the trail without them."""
         self.unpinned = self.plain
         self.shown = trail
 

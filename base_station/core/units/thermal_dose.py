@@ -35,7 +35,7 @@ MAX_INTERVALS = 500  # stretches
 
 
 def add_live(intervals: list[ExposureInterval], boot_id: int, t_ns: int, degc: float) -> float:
-    """Add a live reading; gives what it adds to the dose."""
+    """Add a live reading; returns the increment of the dose."""
     new = ExposureInterval(boot_id, t_ns, degc, t_ns, degc)
     last = intervals[-1] if intervals else None
     if last is None or last.boot_id != boot_id or t_ns < last.last_ns:  # its clock may be set back

@@ -73,7 +73,7 @@ def differences(
     is_forgotten: Callable[[str], bool],
     now_ms: int,
 ) -> Differences:
-    """Differences to what was ``reported`` last, by subject."""
+    """Differences to the state that was ``reported`` last, by subject."""
     found = Differences()
     shown = {f"{_INCIDENT}{one.incident_id}": _incident_event(one) for one in incidents}
     for subject, event in shown.items():

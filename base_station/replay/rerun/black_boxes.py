@@ -54,7 +54,7 @@ def boots_in_files(paths: Iterable[Path]) -> Iterator[BlackBoxBoot]:
 
 
 def read_boot(path: Path) -> BlackBoxBoot:
-    """The boot in a folder of segments.  Raises RecordingError where it is none of a unit."""
+    """The boot in a folder of segments.  Raises RecordingError where it is not a boot of a unit."""
     unit_id, boot_id = _sender(path)
     times = []
     for segment in segment_paths(path):

@@ -24,7 +24,7 @@ _SHIFT_ERROR_NS = 2 * NS_PER_S  # of a shift that is estimated by log times
 _MATCHING_PART = 0.8  # of the statuses
 _ALIGNED_M = 30.0  # of the way by which the two frames are laid over each other
 _ALIGNED_LEAST_M = 3.0  # a shorter way gives no direction
-_LATE_NS = 5 * NS_PER_S  # an older position of the tracker is none of that time
+_LATE_NS = 5 * NS_PER_S  # an older position of the tracker belongs to another time
 
 
 class FrameShift(msgspec.Struct, frozen=True):

@@ -42,7 +42,7 @@ class EnrolledUnits:
         self._audited: set[str] = set()
 
     def update(self) -> None:
-        """Nothing where there is no authority; what cannot be read now is read the next time."""
+        """Without an authority there are none; a file that cannot be read is read the next time."""
         if not self._pki.exists():
             return
         with self._trouble:

@@ -30,7 +30,7 @@ class ExpiryWatch:
         self._problems: tuple[str, ...] = ()
 
     def problems(self) -> tuple[str, ...]:
-        """Nothing without an authority; what is wrong with one that cannot be read."""
+        """Findings: none without an authority; the fault of an authority that cannot be read."""
         now_ns = self._clock.monotonic_ns()
         if self._read_ns is None or now_ns - self._read_ns >= _READ_AGAIN_NS:
             self._read_ns = now_ns

@@ -1,4 +1,4 @@
-"""The authority's folder, ``DATA/pki``, and what can be done with it.
+"""Folder of the certificate authority, ``DATA/pki``, and its operations.
 
     authority.pem   authority.key   the root of trust; the key may be kept elsewhere
     station.pem     station.key     this station on the bus and towards browsers
@@ -226,7 +226,7 @@ class PkiFolder:
             )
 
     def take_registry(self, other: Registry) -> None:
-        """Add what another station of this authority has enrolled and revoked."""
+        """Add enrolments and revocations of another station of this authority."""
         with locked(self._existing()):
             registry = self.registry()
             merged = registry.merged(other)

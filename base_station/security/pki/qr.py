@@ -14,7 +14,7 @@ _PIXELS_A_MODULE = 6
 
 
 def qr_code(enrolment: Enrolment) -> segno.QRCode:
-    """The smallest that holds it, with what error correction fits beside."""
+    """Smallest code for the content, with the strongest error correction that fits."""
     return segno.make_qr(enrolment.to_compact(), error="l")
 
 

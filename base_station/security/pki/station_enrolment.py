@@ -46,7 +46,7 @@ class StationEnrolment:
 
 
 def read_station_enrolment(path: Path) -> StationEnrolment:
-    """Raises ConfigError, one sentence that names the file and what to do."""
+    """Raises ConfigError with one sentence: the file, and the remedy."""
     try:
         table = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), _EnrolmentTable)
         registry = msgspec.json.decode(table.registry, type=Registry)

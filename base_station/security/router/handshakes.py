@@ -74,7 +74,7 @@ async def connect_secure(
 
 
 def _continue_handshake(secured: ssl.SSLSocket) -> str | None:
-    """Goes on with the handshake; gives what it waits for."""
+    """Continue the handshake; returns the event that it waits for."""
     try:
         secured.do_handshake()
     except ssl.SSLWantReadError:

@@ -51,7 +51,7 @@ def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
 
 
 class Router:
-    """Open from the start; ``refresh`` follows what has changed in the authority's folder.
+    """Open from the start; ``refresh`` applies changes of the authority's folder.
 
     Over TLS an acceptor stands in front of it.  It handles revocations and the station's renewed
     certificate; only for a new enrolment the router opens again.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -15,19 +15,17 @@ from base_station.app.archive_sources import open_copier
 from base_station.archive.catalogue import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
 from base_station.archive.store import open_store
 from base_station.cli import app
-from base_station.engine.log_feed import FolderFeed
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import AlarmRow
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
-from shared.clock import NS_PER_S, SystemClock
+from shared.clock import SystemClock
 from shared.errors import ArchiveError, UserError
-from shared.mcap_log import SegmentWriter, segment_paths
-from shared.messages.station import CloseIncident
+from shared.mcap_log import segment_paths
 from tests.rig.archived_station import muster, refusal, succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
+from tests.rig.closed_folder import close_incident
 from tests.rig.noted_segments import note_segments
-from tests.rig.station_script import START_NS, Script
 
 
 def test_bucket_contains_the_incidents_of_the_station(
@@ -159,14 +157,7 @@ def test_damaged_copy_is_detected_and_replaced(data: Path, tmp_path: Path) -> No
 
 
 def test_erased_person_is_removed_from_the_next_copy(data: Path, tmp_path: Path) -> None:
-    records = list(FolderFeed(data / "log").records())
-    script = Script()
-    script.now_s = (records[-1][0] - START_NS) / NS_PER_S + 1.0
-    script.act(CloseIncident("i3"))
-    with closing(SegmentWriter(data / "log")) as log:
-        for record in script.records:
-            log.write(*record)
-    succeeded("rebuild", "--data", data)
+    close_incident(data, "i3")
     disk = tmp_path / "disk"
     succeeded("archive", "copy", disk, "--data", data)
     assert any(b"Ada" in file.read_bytes() for file in disk.rglob("*.*"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -21,14 +20,13 @@ from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import Assignment, TrackPoint
 from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
-from shared.clock import NS_PER_S, SystemClock
-from shared.mcap_log import LogRecord, SegmentReader, SegmentWriter, segment_paths
-from shared.messages.station import CloseIncident
+from shared.clock import SystemClock
+from shared.mcap_log import LogRecord, SegmentReader, segment_paths
 from tests.rig.archived_station import succeeded
 from tests.rig.bucket_server import ADDRESS, BucketServer
+from tests.rig.closed_folder import close_incident
 from tests.rig.noted_segments import note_segments
 from tests.rig.station_command import Browser, Command
-from tests.rig.station_script import START_NS, Script
 from tests.rig.waiting import until
 
 ADA = b"Ada"
@@ -37,14 +35,7 @@ ADA = b"Ada"
 @pytest.fixture
 def closed(data: Path) -> Path:
     """The station, with all its incidents closed."""
-    records = list(FolderFeed(data / "log").records())
-    script = Script()
-    script.now_s = (records[-1][0] - START_NS) / NS_PER_S + 1.0
-    script.act(CloseIncident("i3"))
-    with closing(SegmentWriter(data / "log")) as log:
-        for record in script.records:
-            log.write(*record)
-    succeeded("rebuild", "--data", data)
+    close_incident(data, "i3")
     with Store(data / "station.sqlite") as store:
         note_segments(store, data / "log")
     return data

@@ -46,7 +46,7 @@ class Pair:
         self.taken.append(subject)
 
     def look(self) -> list[str]:
-        self.handover.look(STOP)
+        self.handover.run_round(STOP)
         return self.taken
 
 
