@@ -93,7 +93,7 @@ class _CopySource:
 
 
 class _LogGoneError(ArchiveError):
-    """A copy cannot be made again: the log is gone, and the archived copy must stay."""
+    """A copy cannot be made again without the log; the archived copy must not be replaced."""
 
 
 class ArchiveCopier:
@@ -150,7 +150,7 @@ class ArchiveCopier:
             if there is not None and not self._has_log(incident):
                 subjects = erased_in(self._archive, there, self._store)
                 if not subjects and self._copies.is_outdated_by_erasure(incident.incident_id):
-                    return self._keep(there)  # nobody in it was erased since
+                    return self._keep(there)  # no erased person is in it
                 if not subjects:
                     raise _LogGoneError(
                         f"{incident.incident_id} has newer data than its copy in "

@@ -78,7 +78,7 @@ class IncidentTracks:
     description: str = ""  # of the dispatch; empty: there was none
 
     def named_as(self, description: str) -> IncidentTracks:
-        """File name that includes the kind of the trails."""
+        """The same tracks, with the description added to the name."""
         return replace(self, name=f"{self.name}, {description}")
 
     def anchor_or_refuse(self) -> Anchor:

@@ -24,7 +24,7 @@ class TokenBucket:
         return True
 
     def spend(self, amount: float, now_ns: int) -> None:
-        """Take tokens for work already done, even more than there are: the debt is refilled first."""
+        """Take tokens for work already done; more than there are become a debt."""
         self._fill(now_ns)
         self._left -= amount
 

@@ -29,9 +29,8 @@ OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the or
 # From a log time on, until before another one; topics, or None: all that happened and was decided.
 ReadLog = Callable[[int, int | None, Collection[str] | None], Iterator[Record]]
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
-Watch = Callable[
-    [], Callable[[], bool]
-]  # the returned function: True if the log was rewritten since
+# The returned function gives True if the log was rewritten since.
+Watch = Callable[[], Callable[[], bool]]
 Decision = FusedPosition | AlarmChange
 
 BURST = 1000  # events
@@ -47,9 +46,8 @@ class Archive:
     make_pipeline: MakePipeline
     watch: Watch = lambda: lambda: False
     own: Checkpoints | None = None  # where a playback saves the states that it comes by
-    flaws: Callable[[], Sequence[str]] = (
-        tuple  # differences to the original that are known so far, in words
-    )
+    # Differences to the original log that are known so far, in words.
+    flaws: Callable[[], Sequence[str]] = tuple
     # Checks a little more of the log for defects; False: all of it is checked.
     check_next_chunk: Callable[[], bool] = lambda: False
     note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found

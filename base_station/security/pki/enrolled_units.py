@@ -42,7 +42,7 @@ class EnrolledUnits:
         self._audited: set[str] = set()
 
     def update(self) -> None:
-        """Without an authority there are none; a file that cannot be read is read the next time."""
+        """Read enrolments again, where there is an authority; a file that cannot be read waits."""
         if not self._pki.exists():
             return
         with self._trouble:
