@@ -128,7 +128,7 @@ class StationStorage:
 
     def erasure_queue(
         self,
-        pulls: RecordingTransfers,
+        transfers: RecordingTransfers,
         act: Act,
         save_soon: Callable[[], None],
         leads: Callable[[], bool],
@@ -156,7 +156,7 @@ class StationStorage:
 
         waited: Counter[Path] = Counter()
 
-        def mended_first(path: Path, damage: str) -> bool:
+        def is_repair_pending(path: Path, damage: str) -> bool:
             waited[path] += 1
             if not has_peer() or waited[path] > REPAIR_RETENTION:
                 return False
@@ -164,8 +164,8 @@ class StationStorage:
             return True
 
         service = ErasureService(
-            self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
-            mended_first, self.roster.forget, erase_audio,
+            self.recorder, self.store, self.checkpoints, self.records, self.clock, transfers, act,
+            is_repair_pending, self.roster.forget, erase_audio,
         )  # fmt: skip
         return ErasureQueue(service, self.folder.erasure_jobs, obstacle, record_result)
 

@@ -36,7 +36,7 @@ from base_station.core.erasure.names_in_older_logs import has_names
 from base_station.engine.ports import ActionResult
 from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
 from base_station.privacy.log_files import LogFiles, LogReading
-from base_station.privacy.log_rewriter import LogRewriter, RepairFirst
+from base_station.privacy.log_rewriter import LogRewriter, RepairPending
 from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -100,26 +100,26 @@ class ErasureService:
         checkpoints: Checkpoints,
         records: Records,
         clock: Clock,
-        pulls: RecordingTransfers,
+        transfers: RecordingTransfers,
         act: Act | None = None,
-        mended_first: RepairFirst = lambda _path, _damage: False,
+        is_repair_pending: RepairPending = lambda _path, _damage: False,
         forget_name: Callable[[str], None] = lambda _person_id: None,
         erase_audio: EraseAudio = lambda _from_ns, _until_ns: 0,
     ) -> None:
         """``act`` has the running station forget what it holds in memory, and order the erasure;
-        None: no station runs on the folder.  ``mended_first`` tells whether what is lost of a
-        segment is about to be fetched from the other station.
+        None: no station runs on the folder.  ``is_repair_pending``: True where the
+        lost part of a segment is about to be fetched from the other station.
         ``forget_name`` has it show a person's name no more.  ``erase_audio`` is called for a whole
         incident alone: in what is spoken nobody can tell who speaks.
         """
         self._log = log
         self._reading = LogReading(log)
-        self._rewriter = LogRewriter(log, records, mended_first)
+        self._rewriter = LogRewriter(log, records, is_repair_pending)
         self._store = store
         self._checkpoints = checkpoints
         self._records = records
         self._clock = clock
-        self._pulls = pulls
+        self._transfers = transfers
         self._act = act
         self._forget_name = forget_name
         self._erase_audio = erase_audio
@@ -306,7 +306,7 @@ class ErasureService:
         """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
         way finds its folder gone, and ends.
         """
-        self._pulls.forget(erasure.unit_ids)
+        self._transfers.forget(erasure.unit_ids)
         recordings = DataFolder(self._log.folder.parent).recordings
         for folder in (recordings / unit_id for unit_id in sorted(erasure.unit_ids)):
             files = sum(1 for path in folder.rglob("*") if path.is_file())

@@ -17,20 +17,20 @@ from shared.coded_text import coded
 from shared.errors import StoreError
 from shared.mcap_log import SegmentReader, remove_torn, rewrite_segment
 
-RepairFirst = Callable[[Path, str], bool]  # receives the damage in a segment of the log
+RepairPending = Callable[[Path, str], bool]  # receives the damage in a segment of the log
 
 
 class LogRewriter:
     """For one thread at a time; a station that runs goes on logging in a new segment."""
 
-    def __init__(self, log: LogFiles, records: Records, mended_first: RepairFirst) -> None:
-        """``mended_first``: True where the lost part of a segment is about to be fetched from the
-        other station.
+    def __init__(self, log: LogFiles, records: Records, is_repair_pending: RepairPending) -> None:
+        """``is_repair_pending``: True where the lost part of a segment is about to be fetched from
+        the other station.
         """
         self._log = log
         self._reading = LogReading(log)
         self._records = records
-        self._mended_first = mended_first
+        self._is_repair_pending = is_repair_pending
 
     def rewrite(
         self,
@@ -74,7 +74,7 @@ class LogRewriter:
         """
 
         def note(part: str) -> None:
-            if path.parent == self._log.folder and self._mended_first(path, part):
+            if path.parent == self._log.folder and self._is_repair_pending(path, part):
                 raise StoreError(
                     coded(
                         "erasure-after-mending",

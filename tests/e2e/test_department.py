@@ -22,7 +22,6 @@ from base_station.security.pki.folder import PkiFolder
 from shared.enrolment import Holder
 from tests.e2e.console_page import barriers
 from tests.e2e.language_checks import english_on
-from tests.e2e.page_language import english_on
 from tests.rig.department_process import DepartmentProcess
 from tests.rig.department_reporter import DepartmentReporter
 from tests.rig.loaded_program import launch_loaded

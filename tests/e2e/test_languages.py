@@ -12,9 +12,6 @@ from tests.e2e import scenes
 from tests.e2e.console_page import barriers
 from tests.e2e.language_checks import english_on
 from tests.e2e.layout_checks import flaws
-from tests.e2e.page_language import (
-    english_on,
-)
 from tests.e2e.stage import Stage
 
 BEYOND_PX = "shown => shown.scrollWidth - shown.clientWidth"

@@ -22,14 +22,14 @@ def test_restarted_station_continues_its_transfers(unit: RecordedUnit, tmp_path:
     unit.linked = False
     with desk(unit.ask, tmp_path) as first:
         first.add("chief", unit.window())
-        until(lambda: "does not answer" in first.pulls()[0].problem)
+        until(lambda: "does not answer" in first.transfers()[0].problem)
     unit.linked = True
     with desk(unit.ask, tmp_path) as second:
-        until(lambda: second.pulls()[0].state is TransferState.DONE)
+        until(lambda: second.transfers()[0].state is TransferState.DONE)
         (view,) = second.views()
     assert view.unit_id == U
     assert view.done_bytes == view.total_bytes > 0
-    assert second.pulls()[0].by == "chief"
+    assert second.transfers()[0].by == "chief"
 
 
 def test_absent_unit_delays_no_other_transfer(unit: RecordedUnit, tmp_path: Path) -> None:
@@ -37,8 +37,8 @@ def test_absent_unit_delays_no_other_transfer(unit: RecordedUnit, tmp_path: Path
     with desk(unit.ask, tmp_path) as both:
         both.add("chief", away)
         both.add("chief", unit.window(0.0, 600.0))
-        until(lambda: both.pulls()[1].state is TransferState.DONE)
-        assert both.pulls()[0].state is TransferState.WAITING
+        until(lambda: both.transfers()[1].state is TransferState.DONE)
+        assert both.transfers()[0].state is TransferState.WAITING
 
 
 def test_stopped_transfer_can_be_requested_again(unit: RecordedUnit, tmp_path: Path) -> None:
@@ -51,8 +51,8 @@ def test_stopped_transfer_can_be_requested_again(unit: RecordedUnit, tmp_path: P
         assert not one.stop(pull.fetch_id)
         unit.linked = True
         one.add("chief", unit.window())
-        until(lambda: one.pulls()[-1].state is TransferState.DONE)
-    assert one.pulls()[0].problem == "stopped by a person"
+        until(lambda: one.transfers()[-1].state is TransferState.DONE)
+    assert one.transfers()[0].problem == "stopped by a person"
 
 
 def test_a_window_that_ends_before_it_begins_is_refused(unit: RecordedUnit, tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ def test_transfer_of_an_erased_recording_is_ended(tmp_path: Path) -> None:
         assert not (folder.recordings / "FF-01").exists()
         asked.clear()
     with TransferQueue(ask, folder.recordings, SystemClock()) as again:
-        (pull,) = again.pulls()
+        (pull,) = again.transfers()
         assert (pull.state, pull.problem) == (
             TransferState.FAILED,
             "deleted: its wearer is forgotten",

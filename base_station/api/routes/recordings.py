@@ -49,7 +49,7 @@ class Recording(BaseModel):
 @router.get("/recordings")
 def list_recordings(station: Station, _: Viewer) -> list[Recording]:
     """Those that are being pulled and the last that are over."""
-    return [_recording(pull) for pull in _desk(station).pulls()]
+    return [_recording(pull) for pull in _desk(station).transfers()]
 
 
 @router.post("/recordings", status_code=202)

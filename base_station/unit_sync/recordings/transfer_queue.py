@@ -47,17 +47,17 @@ class TransferQueue:
         self._ask = ask
         self._folder = folder
         self._clock = clock
-        self._pulls = JobQueue(
+        self._transfers = JobQueue(
             folder / _LIST, Pull, "recordings", self._work, "recordings are not pulled"
         )
         self._running: dict[str, Transfer] = {}
 
     def __enter__(self) -> TransferQueue:
-        self._pulls.start()
+        self._transfers.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._pulls.close()
+        self._transfers.close()
         for fetch in self._running.values():
             fetch.close()
 
@@ -76,29 +76,29 @@ class TransferQueue:
             make_folder(self._folder)
         except OSError as error:
             raise StoreError(making_fault(self._folder, error)) from error
-        return self._pulls.add(lambda under_way: _new_pull(by, wanted, under_way))
+        return self._transfers.add(lambda under_way: _new_pull(by, wanted, under_way))
 
     def stop(self, fetch_id: str) -> bool:
         """Give it up; what has come is kept.  False where there is no such pull under way."""
-        for pull in self._pulls.under_way():
+        for pull in self._transfers.under_way():
             if pull.fetch_id == fetch_id:
-                return self._pulls.note(
+                return self._transfers.note(
                     pull, save=True, state=TransferState.FAILED, **_problem(_STOPPED)
                 )
         return False
 
     def forget(self, unit_ids: Collection[str]) -> None:
         """Mark all transfers of these units as deleted, and end them: a wearer is forgotten."""
-        self._pulls.note_each(
+        self._transfers.note_each(
             lambda pull: pull.wanted.unit_id in unit_ids,
             state=TransferState.FAILED,
             **_problem(_DELETED),
         )
-        self._pulls.wake()
+        self._transfers.wake()
 
-    def pulls(self) -> tuple[Pull, ...]:
+    def transfers(self) -> tuple[Pull, ...]:
         """Those under way and the last that are over."""
-        return self._pulls.all()
+        return self._transfers.all()
 
     def views(self) -> tuple[RecordingView, ...]:
         """As consoles see them."""
@@ -112,7 +112,7 @@ class TransferQueue:
                 one.total_bytes,
                 text_code_view_or_none(one.problem_code),
             )
-            for one in self.pulls()
+            for one in self.transfers()
         )
 
     def _work(self, pulls: list[Pull]) -> float:
@@ -120,7 +120,7 @@ class TransferQueue:
         self._close_ended({pull.fetch_id for pull in pulls})
         answered = False
         for pull in pulls:
-            if self._pulls.is_closing:
+            if self._transfers.is_closing:
                 break
             answered |= self._step_transfer(pull)
         if not pulls:
@@ -137,10 +137,10 @@ class TransferQueue:
                 fetch = Transfer(self._ask, self._folder, pull.wanted, self._clock)
                 self._running[pull.fetch_id] = fetch
         except MusterError as error:  # another program pulls from this unit
-            self._pulls.note(pull, save=False, **_problem(text_of_error(error)))
+            self._transfers.note(pull, save=False, **_problem(text_of_error(error)))
             return False
         fetch.step()
-        self._pulls.note(
+        self._transfers.note(
             pull,
             save=fetch.state.is_over,
             state=fetch.state,
