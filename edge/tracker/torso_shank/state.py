@@ -41,6 +41,7 @@ TORSO_SHANK = np.dtype(
         ("begin_at", np.int64),  # sample of the instant
         ("begin_s", np.float64),
         ("begin_n_m", np.float64, 2),
+        ("begin_height_m", np.float64),
         ("begin_distance_m", np.float64),
         ("begin_n_mps", np.float64, 2),
         ("velocity_n_mps", np.float64, 2),

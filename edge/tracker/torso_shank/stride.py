@@ -18,6 +18,9 @@ from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.torso_front import add_push, learn_front
 from edge.tracker.trunk.dead_reckoning import state_errors, take_step
+from edge.tracker.trunk.usual_steps import is_usual, length_std
+
+STEPS = 2  # of a stride
 
 
 @njit()
@@ -27,6 +30,7 @@ def begin_stride(ring: Ring, state: StrideState, k: int, north_mps: float, east_
     state.begin_at = k
     state.begin_s = ring[k & (len(ring) - 1)].t_s
     state.begin_distance_m = trunk.distance_m
+    state.begin_height_m = trunk.height_m
     for i in range(2):
         state.begin_n_m[i] = trunk.position_n_m[i]
     state.begin_n_mps[0] = state.velocity_n_mps[0] = north_mps
@@ -93,10 +97,27 @@ def end_stride(
         way_n_m[i] = trunk.position_n_m[i] - state.begin_n_m[i]
     length_m = math.sqrt(way_n_m[0] ** 2 + way_n_m[1] ** 2)
     released_m = ring[(trunk.released - 1) & mask].distance_m if trunk.released > 0 else 0.0
-    _count_stride(ring, state, k, way_n_m, length_m, config)
+    std = _stride_std(state, lasts_s, length_m, config)
+    _count_stride(ring, state, k, way_n_m, length_m, std, config)
     trunk.distance_m = max(state.begin_distance_m + length_m, released_m)
     _correct_rows(ring, state, k, gained_n_mps, lasts_s, released_m, config)
     _learn_ratio(state, length_m, config)
+
+
+@njit()
+def _stride_std(
+    state: StrideState, lasts_s: float, length_m: float, config: TorsoShankConfig
+) -> float:
+    """Return the deviation of a stride by its length.
+
+    In one that is not of a usual walk the leg is bent or the body in the air where the shank passes
+    the vertical, and its rate is not the body's.
+    """
+    usual = config.waist.usual
+    climbed_m = state.waist.trunk.height_m - state.begin_height_m
+    if is_usual(STEPS, lasts_s, climbed_m, usual):
+        return float(state.leg_std)
+    return float(length_std(STEPS, lasts_s, length_m, state.leg_std, usual))
 
 
 @njit()
@@ -106,6 +127,7 @@ def _count_stride(
     k: int,
     way_n_m: Floats,
     length_m: float,
+    std: float,
     config: TorsoShankConfig,
 ) -> None:
     """Add the errors of the stride; its way is counted already."""
@@ -114,7 +136,7 @@ def _count_stride(
     if length_m > 0.0:
         for i in range(2):
             way_n_m[i] /= length_m
-    take_step(trunk, length_m, state.leg_std, way_n_m, ring[k & (len(ring) - 1)].t_s, config.trunk)
+    take_step(trunk, length_m, std, way_n_m, ring[k & (len(ring) - 1)].t_s, config.trunk)
     trunk.position_n_m[0], trunk.position_n_m[1] = ended_n_m
     trunk.steps += 1  # a stride is two steps
 
