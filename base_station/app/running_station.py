@@ -151,7 +151,7 @@ class RunningStation:
             start_again=self._restarts.request,
             step_again=self._restarts.note_repaired,
             erasures=self._waiting_erasures,
-            unfinished_erasures=UnfinishedErasures(disk.store).look,
+            unfinished_erasures=UnfinishedErasures(disk.store).find,
             forget=self._erase_for_peer,
         )
         standby = resources.config.standby

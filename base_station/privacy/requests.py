@@ -13,7 +13,7 @@ from base_station.storage.job_queue import JobList
 from base_station.storage.request_files import FolderAnswer, FolderRequest, RequestFiles
 from shared.errors import MusterError, UserError
 
-_LOOK_EVERY_S = 0.2
+_POLL_INTERVAL_S = 0.2
 
 Accept = Callable[[str, str], ErasureJob]  # kind and id; UserError: why it is refused
 
@@ -82,4 +82,4 @@ def _done(folder: DataFolder, forgetting_id: str, on_progress: Progress) -> Eras
             if job.state is ErasureState.DONE:
                 what = f"{job.kind} {job.subject_id}"
                 return ErasureResult(what, job.records, job.files, job.damaged, job.kept)
-        time.sleep(_LOOK_EVERY_S)
+        time.sleep(_POLL_INTERVAL_S)

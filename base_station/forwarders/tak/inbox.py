@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import msgspec
 
-from base_station.forwarders.tak.parsing import MarkerGone, NoMarkerError, read_event
+from base_station.forwarders.tak.parsing import MarkerDeletion, NoMarkerError, read_event
 from base_station.forwarders.tak.splitter import EventSplitter
 from base_station.views.wire import AnchorView
 from shared.clock import NS_PER_S
@@ -51,7 +51,7 @@ class ExternalInbox:
         except NoMarkerError as error:
             self._refuse(str(error))
             return
-        if isinstance(read, MarkerGone):
+        if isinstance(read, MarkerDeletion):
             marker_id = f"{self._source}/{read.uid}"
             self._waiting.pop(marker_id, None)
             if len(self._gone) < WAITING_MAX:

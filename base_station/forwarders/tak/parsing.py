@@ -22,7 +22,7 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 @dataclass(frozen=True, slots=True)
-class MarkerGone:
+class MarkerDeletion:
     """Another team has deleted a marker, or cancelled an emergency."""
 
     uid: str
@@ -32,7 +32,7 @@ class NoMarkerError(Exception):
     """Event that cannot be read, with the reason."""
 
 
-def read_event(source: str, raw: bytes) -> ExternalMarker | MarkerGone | None:
+def read_event(source: str, raw: bytes) -> ExternalMarker | MarkerDeletion | None:
     """None for an event that is shown nowhere, such as a ping; raises NoMarkerError."""
     try:
         event = fromstring(raw, forbid_dtd=True)
@@ -43,10 +43,10 @@ def read_event(source: str, raw: bytes) -> ExternalMarker | MarkerGone | None:
     if not 0 < len(uid) <= _ID_CHARACTERS or not uid.isprintable():
         raise NoMarkerError("it has no uid")
     if kind == EMERGENCY_CANCELLED:
-        return MarkerGone(uid)
+        return MarkerDeletion(uid)
     if kind == _DELETED:
         link = event.find("detail/link")
-        return None if link is None else MarkerGone(link.get("uid", ""))
+        return None if link is None else MarkerDeletion(link.get("uid", ""))
     shown = _kind_of(kind)
     return None if shown is None else _marker(source, uid, kind, shown, event)
 

@@ -34,8 +34,8 @@ class UnfinishedErasures:
         self._ordered: dict[str, str] = {}  # id of the order by subject
         self._left: dict[str, str] = {}  # of them, those from before the last take-over
 
-    def look(self) -> tuple[UnfinishedErasure, ...]:
-        """Those from before the last take-over: later ones are of the station that leads, which
+    def find(self) -> tuple[UnfinishedErasure, ...]:
+        """Erasures ordered before the last take-over: later ones are of the station that leads, which
         has them in its queue.  Raises StoreError.
         """
         wanted = (

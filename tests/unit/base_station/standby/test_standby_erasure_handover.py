@@ -45,7 +45,7 @@ class Pair:
             raise StoreError("the disk is full")
         self.taken.append(subject)
 
-    def look(self) -> list[str]:
+    def run_round(self) -> list[str]:
         self.handover.run_round(STOP)
         return self.taken
 
@@ -57,44 +57,44 @@ def pair() -> Pair:
 
 def test_waiting_erasures_of_the_other_are_taken_once(pair: Pair) -> None:
     pair.serve()
-    assert pair.look() == ["person ana", "incident i1"]
+    assert pair.run_round() == ["person ana", "incident i1"]
     pair.waiting.append(WaitingErasure("r3", "person", "ana"))  # requested again later
-    assert pair.look() == ["person ana", "incident i1", "person ana"]
+    assert pair.run_round() == ["person ana", "incident i1", "person ana"]
 
 
 def test_station_that_follows_takes_none(pair: Pair) -> None:
     pair.serve()
     pair.leads = False
     pair.unfinished = [UnfinishedErasure("o1", "person bo")]
-    assert pair.look() == []
+    assert pair.run_round() == []
 
 
 def test_erasure_that_could_not_be_noted_is_taken_again(pair: Pair) -> None:
     pair.serve()
     pair.failures = 1
     with pytest.raises(StoreError):
-        pair.look()
-    assert pair.look() == ["person ana", "incident i1"]
+        pair.run_round()
+    assert pair.run_round() == ["person ana", "incident i1"]
 
 
 def test_order_of_a_lost_leader_is_taken_without_the_other_station(pair: Pair) -> None:
     pair.other = None
     pair.unfinished = [UnfinishedErasure("o1", "person bo")]
-    assert pair.look() == ["person bo"]
-    assert pair.look() == ["person bo"]
+    assert pair.run_round() == ["person bo"]
+    assert pair.run_round() == ["person bo"]
 
 
 def test_station_that_does_not_answer_has_none_to_take(pair: Pair) -> None:
-    assert pair.look() == []
+    assert pair.run_round() == []
 
 
 def test_answer_that_makes_no_sense_is_refused(pair: Pair) -> None:
     RpcServer("second", pair.router.attach_station(), {"erasures": lambda *_: iter([b"\xc1"])})
     with pytest.raises(MusterError):
-        pair.look()
+        pair.run_round()
     assert pair.taken == []
 
 
 def test_server_that_is_closed_answers_no_more(pair: Pair) -> None:
     pair.serve().close()
-    assert pair.look() == []
+    assert pair.run_round() == []

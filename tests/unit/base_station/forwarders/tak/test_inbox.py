@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from base_station.forwarders.tak.inbox import WAITING_MAX, ExternalInbox
-from base_station.forwarders.tak.parsing import MarkerGone, NoMarkerError, read_event
+from base_station.forwarders.tak.parsing import MarkerDeletion, NoMarkerError, read_event
 from base_station.forwarders.tak.splitter import EVENT_BYTES_MAX, EventSplitter
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import ExternalKind, ExternalMarker
@@ -70,8 +70,8 @@ def test_event_that_is_no_marker_is_ignored() -> None:
 
 def test_deleted_marker_and_cancelled_emergency_are_removed() -> None:
     deleted = cot_event("x", kind="t-x-d-d", detail='<link uid="p1"/>')
-    assert read_event("county", deleted) == MarkerGone("p1")
-    assert read_event("county", cot_event("e", kind="b-a-o-can")) == MarkerGone("e")
+    assert read_event("county", deleted) == MarkerDeletion("p1")
+    assert read_event("county", cot_event("e", kind="b-a-o-can")) == MarkerDeletion("e")
 
 
 @pytest.mark.parametrize(

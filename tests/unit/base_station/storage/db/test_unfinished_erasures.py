@@ -38,7 +38,7 @@ class Audit:
         Records(self.store, SystemClock()).audit("chief", action, detail)
 
     def left(self) -> list[str]:
-        return [one.subject for one in UnfinishedErasures(self.store).look()]
+        return [one.subject for one in UnfinishedErasures(self.store).find()]
 
 
 @pytest.fixture
@@ -78,9 +78,9 @@ def test_reported_erasure_that_is_ordered_again_is_left(audit: Audit) -> None:
 def test_entries_that_come_between_two_looks_are_read(audit: Audit) -> None:
     unfinished = UnfinishedErasures(audit.store)
     audit.note(ORDER)
-    assert unfinished.look() == ()
+    assert unfinished.find() == ()
     audit.note(TAKE_OVER)
-    (left,) = unfinished.look()
+    (left,) = unfinished.find()
     assert (left.order_id, left.subject) == ("a1", "person p1")
     audit.report(FORGOT_PERSON, DONE)
-    assert unfinished.look() == ()
+    assert unfinished.find() == ()
