@@ -35,8 +35,8 @@ class UnfinishedErasures:
         self._left: dict[str, str] = {}  # of them, those from before the last take-over
 
     def find(self) -> tuple[UnfinishedErasure, ...]:
-        """Erasures ordered before the last take-over: later ones are of the station that leads, which
-        has them in its queue.  Raises StoreError.
+        """Erasures ordered before the last take-over: the station that leads has later ones in its
+        queue.  Raises StoreError.
         """
         wanted = (
             select(AuditEntry)
