@@ -12,6 +12,7 @@ from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_varian
 from edge.tracker.foot.output.reported_covariance import stated_heading_variance
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.foot.zupt.stance_consistency import height_is_lost
+from edge.tracker.foot.zupt.zupt_residuals import noise_inflation
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
 from edge.tracker.preprocessing.sample_ring import Ring
@@ -83,6 +84,6 @@ def assign_quality(
         quality = LOST
     ring[slot].reasons = reasons
     ring[slot].quality = quality
-    heading_var = stated_heading_variance(state, config)
+    heading_var = stated_heading_variance(state, noise_inflation(state, config), config)
     heading_var += (config.restart.turn_std_radps * open_s) ** 2
     ring[slot].heading_std_rad = math.sqrt(heading_var)

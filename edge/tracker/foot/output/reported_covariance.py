@@ -32,7 +32,9 @@ def accumulate_heading_bias(state: FilterState, dt_s: float, config: EskfConfig)
 
     For large errors twice the mean of one minus the cosine takes the place of the variance.
     """
-    heading_var = stated_heading_variance(state, config)
+    # A quiet walk has less noise than the filter's model, but no less doubt of a turn in a gap.
+    inflation = max(noise_inflation(state, config), 1.0)
+    heading_var = stated_heading_variance(state, inflation, config)
     variance = 2.0 * (1.0 - math.exp(-0.5 * heading_var))
     cube = variance * min(math.sqrt(heading_var), 1.0)
     north_m, east_m = dt_s * state.velocity_n_mps[0], dt_s * state.velocity_n_mps[1]
@@ -43,11 +45,14 @@ def accumulate_heading_bias(state: FilterState, dt_s: float, config: EskfConfig)
 
 
 @njit()
-def stated_heading_variance(state: FilterState, config: EskfConfig) -> float:
-    """Return the variance (rad^2) of the heading: the filter's, and what it does not model."""
+def stated_heading_variance(state: FilterState, inflation: float, config: EskfConfig) -> float:
+    """Return the variance (rad^2) of the heading: the filter's, and what it does not model.
+
+    ``inflation`` is the factor on the variance of the walk's noise.
+    """
     p = state.covariance
     yaw = ATTITUDE + 2
-    variance = heading_variance(p) + (noise_inflation(state, config) - 1.0) * p[yaw, yaw]
+    variance = heading_variance(p) + (inflation - 1.0) * p[yaw, yaw]
     variance += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
     variance += unobserved_heading_variance(state) + state.hidden_turn_rad**2
     return float(max(variance, 0.0))

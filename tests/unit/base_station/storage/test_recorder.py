@@ -226,7 +226,7 @@ def test_disk_of_unknown_free_space_is_written(
         asked.set()
         raise OSError(errno.ESTALE, "Stale file handle")
 
-    monkeypatch.setattr("base_station.storage.recorder._LOOK_AT_DISK_EVERY_NS", 0)
+    monkeypatch.setattr("base_station.storage.recorder._DISK_CHECK_INTERVAL_NS", 0)
     with recording(tmp_path) as recorder:
         monkeypatch.setattr(shutil, "disk_usage", fail)
         assert asked.wait(PATIENCE_S)

@@ -62,7 +62,7 @@ def test_turn_that_clipped_rates_hide_counts_as_any_other():
     """A sprint's heading was stated as 28 degrees off, and its way as if it were 19."""
     filtered = walk([10.0, 0.0, 0.0], std_rad=[0.4, 0.0, 0.0])
     hidden = walk([10.0, 0.0, 0.0], std_rad=[0.0, 0.0, 0.0], hidden_turn_rad=0.4)
-    assert stated_heading_variance(hidden, CONFIG) == pytest.approx(0.16)
+    assert stated_heading_variance(hidden, 1.0, CONFIG) == pytest.approx(0.16)
     for order in ("second_order_n_m", "third_order_n_m"):
         assert hidden[order] == pytest.approx(filtered[order])
         assert np.abs(hidden[order]).max() > 0.1
