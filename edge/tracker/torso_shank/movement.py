@@ -78,7 +78,7 @@ def _take_instant(
             advance_path(ring, state, k, speed_mps * min(since_s, config.first_stride_s), config)
         state.by_steps = False
     elif state.walking:
-        end_stride(ring, state, k, velocity_n_mps, config)
+        end_stride(ring, state, k, velocity_n_mps, False, config)
     else:
         learn_front(state, velocity_n_mps, config)
         begin_walk(state.waist.trunk, config.trunk)
@@ -124,7 +124,7 @@ def _stand(
         for i in range(2):
             trunk.position_n_m[i] = ring[end & mask].position_n_m[i]
             state.velocity_n_mps[i] = ring[end & mask].velocity_n_mps[i]
-        end_stride(ring, state, end, np.zeros(2), config)
+        end_stride(ring, state, end, np.zeros(2), True, config)
         for j in range(end + 1, k + 1):
             place_row(ring, trunk, j, config.trunk)
     state.walking = state.by_steps = False
@@ -140,7 +140,7 @@ def _give_up_stride(ring: Ring, state: StrideState, k: int, config: TorsoShankCo
     goes_on = now_s - state.waist.step_s < config.waist.longest_period_s
     if goes_on:
         end_n_mps[0], end_n_mps[1] = state.velocity_n_mps[0], state.velocity_n_mps[1]
-    end_stride(ring, state, k, end_n_mps, config)
+    end_stride(ring, state, k, end_n_mps, False, config)
     state.walking, state.by_steps, state.counted_at = False, goes_on, k
     state.steps_since = 0
     begin_stride(ring, state, k, 0.0, 0.0)

@@ -18,7 +18,7 @@ from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.torso_front import add_push, learn_front
 from edge.tracker.trunk.dead_reckoning import state_errors, take_step
-from edge.tracker.trunk.usual_steps import is_usual, length_std
+from edge.tracker.trunk.usual_steps import SHORTEST_M, is_usual, length_at, length_std
 
 STEPS = 2  # of a stride
 
@@ -80,9 +80,13 @@ def end_stride(
     state: StrideState,
     k: int,
     end_n_mps: Floats,
+    is_cut: bool,
     config: TorsoShankConfig,
 ) -> None:
-    """End the stride at sample ``k`` with the velocity (2,) that the torso has there."""
+    """End the stride at sample ``k`` with the velocity (2,) that the torso has there.
+
+    ``is_cut`` says that the wearer has stopped before its other instant.
+    """
     mask = len(ring) - 1
     trunk = state.waist.trunk
     lasts_s = ring[k & mask].t_s - state.begin_s
@@ -97,7 +101,7 @@ def end_stride(
         way_n_m[i] = trunk.position_n_m[i] - state.begin_n_m[i]
     length_m = math.sqrt(way_n_m[0] ** 2 + way_n_m[1] ** 2)
     released_m = ring[(trunk.released - 1) & mask].distance_m if trunk.released > 0 else 0.0
-    std = _stride_std(state, lasts_s, length_m, config)
+    std = _stride_std(state, lasts_s, length_m, is_cut, config)
     _count_stride(ring, state, k, way_n_m, length_m, std, config)
     trunk.distance_m = max(state.begin_distance_m + length_m, released_m)
     _correct_rows(ring, state, k, gained_n_mps, lasts_s, released_m, config)
@@ -106,14 +110,18 @@ def end_stride(
 
 @njit()
 def _stride_std(
-    state: StrideState, lasts_s: float, length_m: float, config: TorsoShankConfig
+    state: StrideState, lasts_s: float, length_m: float, is_cut: bool, config: TorsoShankConfig
 ) -> float:
     """Return the deviation of a stride by its length.
 
     In one that is not of a usual walk the leg is bent or the body in the air where the shank passes
-    the vertical, and its rate is not the body's.
+    the vertical, and its rate is not the body's.  One that a stop cuts short has no frequency of
+    steps; its last step is not seen, and that is its doubt.
     """
     usual = config.waist.usual
+    if is_cut and lasts_s < STEPS / usual.least_hz:
+        doubt_m = length_at(usual.least_hz, usual)
+        return float(max(state.leg_std, doubt_m / max(length_m, SHORTEST_M)))
     climbed_m = state.waist.trunk.height_m - state.begin_height_m
     if is_usual(STEPS, lasts_s, climbed_m, usual):
         return float(state.leg_std)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-_SHORTEST_M = 0.05  # a share of less has no meaning
+SHORTEST_M = 0.05  # a share of less has no meaning
 
 
 class UsualSteps(NamedTuple):
@@ -57,4 +57,4 @@ def length_std(
 ) -> float:
     """Return the deviation of steps that are not usual by their length."""
     doubt_m = length_doubt_m(steps, lasted_s, length_m, usual)
-    return max(usual_std, doubt_m / max(length_m, _SHORTEST_M))
+    return max(usual_std, doubt_m / max(length_m, SHORTEST_M))
