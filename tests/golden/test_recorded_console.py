@@ -17,7 +17,6 @@ from base_station.replay.recomputed_player import RecomputedPlayer
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.known_people import KnownPerson
-from base_station.views.answer import to_ms
 from base_station.views.wire import Snapshot
 from shared.channels import OPERATOR, POSITION, Qos, backfilled_key
 from shared.codec import decode, encode
@@ -130,13 +129,13 @@ def test_recorded_console_equals_a_recomputed_replay(script: Any, tmp_path: Path
 
 
 def undisturbed(station: LiveStation) -> tuple[int, Snapshot]:
-    """Time of an action, and the picture behind it without a tick in between, which may raise an
-    alarm of its own.
+    """Time of an action, and the picture behind it with no other event in between: a tick may raise
+    an alarm, and a message that waited during the action is one nanosecond later in the log.
     """
     while True:
         done = station.act(ReportProblem("disk", "little room"))
         snapshot = station.snapshot()
-        if snapshot.now_ms == to_ms(done.t_ns):
+        if station.pipeline.state.t_ns == done.t_ns:
             return done.t_ns, snapshot
 
 
