@@ -22,7 +22,7 @@ class ReportsProblems(Protocol):
 def health_facts(
     resources: Resources,
     clock: SteadyClock,
-    side: HaMode,
+    ha_mode: HaMode,
     others: Sequence[ReportsProblems],
     *,
     missing: int,
@@ -34,7 +34,14 @@ def health_facts(
     certificates = resources.expiry, resources.console_expiry, resources.renewal
     machine = resources.exposed, resources.router
     network = resources.presence, resources.console_presence
-    parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, *network, side, *others)
+    parts: tuple[ReportsProblems, ...] = (
+        clock,
+        *certificates,
+        *machine,
+        *network,
+        ha_mode,
+        *others,
+    )
     problems = [
         *resources.config.configuration_problems(),
         *(problem for part in parts for problem in part.problems()),
@@ -55,7 +62,7 @@ def health_facts(
         left_out=resources.feed.overflowed,
         missing=missing,
         insecure=bool(resources.config.unencrypted_endpoints()),
-        standby=None if side.ha_status is None else side.ha_status.view(),
+        standby=None if ha_mode.ha_status is None else ha_mode.ha_status.view(),
         recordings=resources.recordings.views(),
         forwarders=forwarders,
         radio=radio,

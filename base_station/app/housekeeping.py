@@ -69,7 +69,7 @@ class Housekeeping:
         if resources.renewal.is_due(in_incident=parts.live.is_in_incident()):
             parts.announce("the renewed certificate is taken up")
             parts.restarts.request(None)
-        if parts.side.leads:
+        if parts.ha_mode.leads:
             self._submit_actions()
 
     def _submit_actions(self) -> None:

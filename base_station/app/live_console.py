@@ -52,7 +52,7 @@ def new_services(parts: LiveParts) -> Services:
         erasures=parts.erasures,
         clock=disk.clock,
         secure=resources.config.http.certificate is not None,
-        ha_status=parts.side.ha_status,
+        ha_status=parts.ha_mode.ha_status,
         recordings=resources.recordings,
         post_processor=parts.post_processor,
         reports=ReportProcess(log_process),

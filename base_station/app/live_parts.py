@@ -30,7 +30,7 @@ class LiveParts:
     announce: Announce
     live: LiveState
     restarts: RestartControl
-    side: HaMode
+    ha_mode: HaMode
     limiter: SenderRateLimiter
     bans: SenderBans
     forwarders: Forwarders

@@ -246,7 +246,7 @@ class RunningStation:
             announce=self._announce,
             live=self._live,
             restarts=self._restarts,
-            side=self._ha_mode,
+            ha_mode=self._ha_mode,
             limiter=self._limiter,
             bans=self._bans,
             forwarders=self._forwarders,

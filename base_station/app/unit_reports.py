@@ -13,8 +13,8 @@ from base_station.unit_sync.durable_ack import DurableAckGate
 class UnitReports:
     """The engine reports; any other thread counts and asks."""
 
-    def __init__(self, resources: Resources, side: HaMode) -> None:
-        self._side = side
+    def __init__(self, resources: Resources, ha_mode: HaMode) -> None:
+        self._ha_mode = ha_mode
         self._recorder = resources.recorder
         self._durable = DurableAckGate(resources.recorder)
         self._missing_count = 0  # times that the log was found to have messages no more
@@ -24,7 +24,7 @@ class UnitReports:
 
     def report(self, held: Report, in_memory: bool) -> None:
         """Pass on the engine's report of received messages of units."""
-        self._side.note_report()
+        self._ha_mode.note_report()
         self._durable.note_report_received()
         refused = self._recorder.lost + self._missing_count
         self.backfill.report(held, refused, alerts_only=in_memory)
@@ -34,4 +34,4 @@ class UnitReports:
         self._missing_count += 1
 
     def _may_acknowledge(self) -> bool:
-        return self._side.may_forget() and self._durable.previous_report_is_durable()
+        return self._ha_mode.may_forget() and self._durable.previous_report_is_durable()

@@ -138,7 +138,7 @@ def make_multi_sensor_tracker(
     """
     entry = find_multi_sensor_tracker(name)
     places = [sensor.place for sensor in sensors.values()]
-    if not fits_places(entry, places):
+    if not accepts_placement(entry, places):
         needed = " and ".join(" or ".join(choices) for choices in entry.places)
         raise ConfigError(
             f"Tracker '{name}' needs one sensor each at {needed}; "
@@ -156,7 +156,7 @@ def find_multi_sensor_tracker(name: str) -> MultiSensorTrackerEntry:
     raise ConfigError(f"There is no tracker '{name}' of several sensors. Known trackers: {known}.")
 
 
-def fits_places(entry: MultiSensorTrackerEntry, places: Iterable[str]) -> bool:
+def accepts_placement(entry: MultiSensorTrackerEntry, places: Iterable[str]) -> bool:
     """Return True if sensors at these places, one at each, are those that a tracker needs."""
     return any(
         all(is_worn_on(*pair) for pair in zip(order, entry.places, strict=True))

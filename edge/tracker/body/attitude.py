@@ -11,7 +11,7 @@ import math
 from numba import njit
 
 from edge.tracker.body.config import BodyConfig
-from edge.tracker.body.path_filter import take_still
+from edge.tracker.body.path_filter import update_bias_at_rest
 from edge.tracker.body.state import HEADING, TICK_S, BodyState, Sample
 from edge.tracker.mechanization.quasi_static import turn_upright
 from edge.tracker.mechanization.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
@@ -99,7 +99,7 @@ def _bridge_gap(state: BodyState, gap_s: float) -> None:
 
 @njit()
 def learn_bias(ring: Ring, state: BodyState, k: int, config: BodyConfig) -> None:
-    """Once a tick: who stands still shows the bias, less the sway of a body."""
+    """Estimate the gyroscope bias once a tick while the person stands; sway is noise."""
     state.bias_variance += config.bias_walk_radps**2 * TICK_S
     rate = ring[k & (len(ring) - 1)].gyro_radps
     off = 0.0
@@ -123,4 +123,4 @@ def learn_bias(ring: Ring, state: BodyState, k: int, config: BodyConfig) -> None
         state.gyro_bias_radps[i] += gain * off_radps
         turned_radps += down[i] * off_radps
     state.bias_variance *= 1.0 - gain
-    take_still(state, turned_radps, gain * turned_radps, config)
+    update_bias_at_rest(state, turned_radps, gain * turned_radps, config)

@@ -49,8 +49,8 @@ def start_path(state: BodyState, iron_std_ut: float, gain_std: float, config: Bo
 
 
 @njit()
-def pass_tick(state: BodyState, config: BodyConfig) -> None:
-    """Let the heading run off by bias and gain for one tick, and the bias wander."""
+def propagate_heading(state: BodyState, config: BodyConfig) -> None:
+    """Propagate the errors of heading over one tick: bias, gain and the bias's random walk."""
     estimate, covariance = state.estimate, state.covariance
     turn_rad = state.heading_rad - state.passed_rad
     state.passed_rad = state.heading_rad
@@ -64,10 +64,10 @@ def pass_tick(state: BodyState, config: BodyConfig) -> None:
 
 
 @njit()
-def take_still(
+def update_bias_at_rest(
     state: BodyState, turned_radps: float, moved_radps: float, config: BodyConfig
 ) -> None:
-    """Measure the bias of who stands, by which the gyroscope's own has then been moved."""
+    """Update the bias by the turn rate at rest, less the correction made to the gyroscope."""
     row = state.row
     row[:] = 0.0
     row[BIAS] = 1.0
@@ -76,7 +76,9 @@ def take_still(
 
 
 @njit()
-def walk_step(state: BodyState, length_m: float, heading_rad: float, config: BodyConfig) -> None:
+def propagate_step(
+    state: BodyState, length_m: float, heading_rad: float, config: BodyConfig
+) -> None:
     """Carry the position's errors over one step."""
     covariance = state.covariance
     north_m, east_m = length_m * math.cos(heading_rad), length_m * math.sin(heading_rad)
@@ -94,7 +96,7 @@ def walk_step(state: BodyState, length_m: float, heading_rad: float, config: Bod
 
 
 @njit()
-def take_unseen_motion(state: BodyState, config: BodyConfig) -> None:
+def widen_by_unseen_motion(state: BodyState, config: BodyConfig) -> None:
     """Widen the position over a tick of motion that no step explains."""
     variance_m2 = unseen_m2(state.moving_s, TICK_S, config.unseen)
     state.covariance[NORTH, NORTH] += variance_m2
@@ -102,7 +104,7 @@ def take_unseen_motion(state: BodyState, config: BodyConfig) -> None:
 
 
 @njit()
-def take_compass(state: BodyState, now_s: float, config: BodyConfig) -> None:
+def update_by_compass(state: BodyState, now_s: float, config: BodyConfig) -> None:
     """Measure the level field, a few times a second at most."""
     passed_s = now_s - state.filtered_s
     if not state.field_seen or passed_s < config.compass_s:

@@ -21,11 +21,11 @@ from edge.tracker.body.config import HAND, POCKET, TRUNK, UNKNOWN_PLACE, BodyCon
 from edge.tracker.body.height import low_pass_pressure, take_height
 from edge.tracker.body.path_filter import (
     low_pass_field,
-    pass_tick,
+    propagate_heading,
+    propagate_step,
     start_path,
-    take_compass,
-    take_unseen_motion,
-    walk_step,
+    update_by_compass,
+    widen_by_unseen_motion,
 )
 from edge.tracker.body.released_rows import release_to, spread_step
 from edge.tracker.body.state import (
@@ -168,12 +168,12 @@ def _take(
     before_s = ring[(k - 1) & (len(ring) - 1)].t_s if k else 0.0
     while next_tick(ticks, state, before_s, sample.t_s, config):
         learn_bias(ring, state, k, config)
-        pass_tick(state, config)
+        propagate_heading(state, config)
         began_s = begins_to_rise(ticks, state, config)
         if began_s >= 0.0:
             _end_swing(ring, trail, ticks, state, k, began_s, config)
         _watch_motion(state, sample.t_s, config)
-    take_compass(state, sample.t_s, config)
+    update_by_compass(state, sample.t_s, config)
     take_height(state)
     for i in range(4):
         sample.quaternion_nb[i] = state.quaternion_nb[i]
@@ -212,7 +212,7 @@ def _end_swing(
     state.step_count += steps
     heading_rad = trail[(k - 1) & (len(ring) - 1)].heading_rad if k else 0.0
     for _ in range(steps):
-        walk_step(state, length_m, heading_rad, config)
+        propagate_step(state, length_m, heading_rad, config)
         take_doubt(state, doubt_m, heading_rad)
     spread_step(ring, trail, state, k, from_s, now_s, steps * length_m)
     release_to(ring, trail, state, k, config)
@@ -228,7 +228,7 @@ def _watch_motion(state: BodyState, now_s: float, config: BodyConfig) -> None:
     if state.quiet_s >= config.rest_s:
         return
     state.moving_s += TICK_S
-    take_unseen_motion(state, config)
+    widen_by_unseen_motion(state, config)
 
 
 @njit()

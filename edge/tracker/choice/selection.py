@@ -20,8 +20,8 @@ from edge.tracker.interface import (
 from edge.tracker.registry import (
     MULTI_SENSOR_TRACKERS,
     TRACKERS,
+    accepts_placement,
     find_tracker,
-    fits_places,
     make_multi_sensor_tracker,
 )
 from shared.coded_text import CodedText, coded
@@ -75,7 +75,7 @@ def select_automatically(sensors: Sensors) -> TrackerSelection:
         for names in combinations(sensors, count):
             places = [sensors[name].place for name in names]
             for entry in MULTI_SENSOR_TRACKERS:
-                if fits_places(entry, places):
+                if accepts_placement(entry, places):
                     return TrackerSelection(entry.name, names, _unused(entry.name, sensors, names))
     on_foot = [name for name in sensors if is_worn_on(sensors[name].place, (FOOT,))]
     tracker = _ON_FOOT if on_foot else _ELSEWHERE
@@ -99,7 +99,7 @@ def select_named(tracker: str, sensors: Sensors, dimensions: BodyDimensions) -> 
         known = (*_names_of_one(), *several, BY_PLACE, AUTO, "none")
         raise ConfigError(f"There is no tracker '{tracker}'. Known trackers: {', '.join(known)}.")
     for names in combinations(sensors, min(len(entry.places), len(sensors))):
-        if fits_places(entry, [sensors[name].place for name in names]):
+        if accepts_placement(entry, [sensors[name].place for name in names]):
             notes = _unused(tracker, sensors, names)
             if _needs_leg_length(entry) and dimensions == BodyDimensions():
                 notes = (*notes, _usual_leg(tracker))

@@ -10,7 +10,7 @@ from edge.tracker.interface import Reason
 from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import ShankState, StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.stride import begin_stride, end_stride, predict
-from edge.tracker.torso_shank.torso_front import learn_front
+from edge.tracker.torso_shank.torso_front import update_front_direction
 from edge.tracker.torso_shank.torso_steps import advance_path, follow_steps
 from edge.tracker.trunk.attitude import add_forward
 from edge.tracker.trunk.dead_reckoning import begin_walk, place_row, state_errors
@@ -80,7 +80,7 @@ def _take_instant(
     elif state.walking:
         end_stride(ring, state, k, velocity_n_mps, False, config)
     else:
-        learn_front(state, velocity_n_mps, config)
+        update_front_direction(state, velocity_n_mps, config)
         begin_walk(state.waist.trunk, config.trunk)
         _start(ring, state, k, speed_mps, config)
     begin_stride(ring, state, k, velocity_n_mps[0], velocity_n_mps[1])

@@ -16,7 +16,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
-from edge.tracker.torso_shank.torso_front import add_push, learn_front
+from edge.tracker.torso_shank.torso_front import add_push, update_front_direction
 from edge.tracker.trunk.dead_reckoning import state_errors, take_step
 from edge.tracker.trunk.usual_steps import SHORTEST_M, is_usual, length_at, length_std
 
@@ -92,7 +92,7 @@ def end_stride(
     lasts_s = ring[k & mask].t_s - state.begin_s
     if lasts_s <= 0.0:
         return
-    learn_front(state, end_n_mps, config)
+    update_front_direction(state, end_n_mps, config)
     gained_n_mps = np.zeros(2)
     way_n_m = np.zeros(2)
     for i in range(2):

@@ -18,8 +18,8 @@ from edge.tracker.trunk.attitude import level_force
 
 
 @njit()
-def learn_front(state: StrideState, end_n_mps: Floats, config: TorsoShankConfig) -> None:
-    """Take the stride that ends with a velocity (2,)."""
+def update_front_direction(state: StrideState, end_n_mps: Floats, config: TorsoShankConfig) -> None:
+    """Update the direction of the front by the stride that ends with a velocity (2,) in m/s."""
     north_mps = end_n_mps[0] - state.begin_n_mps[0]
     east_mps = end_n_mps[1] - state.begin_n_mps[1]
     pushed = state.pushed_n_mps

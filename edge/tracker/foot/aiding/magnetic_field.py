@@ -41,8 +41,8 @@ def start_hypothesis(
 
 
 @njit()
-def forget_steel(hypothesis: Aid, moved_m: float, config: EskfConfig) -> None:
-    """Forget the distortion where the foot stood before, as far as it has moved since."""
+def decay_distortion(hypothesis: Aid, moved_m: float, config: EskfConfig) -> None:
+    """Fade the distortion by steel with the distance moved since the last stance."""
     near = math.exp(-moved_m / config.field.near_m)
     wide = math.exp(-moved_m / config.field.wide_m)
     _fade(hypothesis, NEAR, near)

@@ -20,8 +20,8 @@ from edge.tracker.foot.aiding.aiding_filter import (
     sync_variance,
 )
 from edge.tracker.foot.aiding.magnetic_field import (
+    decay_distortion,
     earth_log_likelihood,
-    forget_steel,
     north_of,
     north_variance,
     set_field_direction,
@@ -94,7 +94,7 @@ def _update(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfC
     moved_m = _moved_m(compass, state)
     for j in range(len(hypotheses)):
         _sync_heading_variance(compass, hypotheses[j], prior)
-        forget_steel(hypotheses[j], moved_m, config)
+        decay_distortion(hypotheses[j], moved_m, config)
         update_hypothesis(compass, hypotheses[j], config)
     _normalise_weights(compass, config)
     mean, variance = _mean_heading(compass)

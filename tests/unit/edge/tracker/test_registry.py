@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from edge.tracker.interface import MultiSensorTrackerEntry
-from edge.tracker.registry import fits_places, make_multi_sensor_tracker
+from edge.tracker.registry import accepts_placement, make_multi_sensor_tracker
 from shared.errors import ConfigError
 
 
@@ -31,7 +31,7 @@ PAIR = MultiSensorTrackerEntry(
     ],
 )
 def test_each_place_is_taken_once_and_none_is_left(places, fits):
-    assert fits_places(PAIR, places) is fits
+    assert accepts_placement(PAIR, places) is fits
 
 
 def test_an_unknown_name_is_refused():
