@@ -86,5 +86,10 @@ def _opens_incident(station: Services, by: str, report: NoteDispatch) -> bool:
 def _content(dispatch: DispatchView) -> DispatchView:
     """Without the fields that differ between two reports of the same content."""
     return msgspec.structs.replace(
-        dispatch, updated_ms=None, received_ms=None, is_dismissed=False, warnings=()
+        dispatch,
+        updated_ms=None,
+        received_ms=None,
+        is_dismissed=False,
+        warnings=(),
+        warning_codes=(),
     )

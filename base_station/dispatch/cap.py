@@ -18,6 +18,7 @@ from defusedxml.ElementTree import fromstring
 from base_station.dispatch.location import local_name
 from base_station.dispatch.report_parts import ReportParts, plain
 from shared.clock import NS_PER_S
+from shared.coded_text import TextCode, coded
 from shared.errors import WireError
 from shared.messages import ExternalKind, ExternalMarker
 
@@ -39,6 +40,7 @@ class CapAlert(msgspec.Struct, frozen=True):
     markers: tuple[ExternalMarker, ...]
     replaced: tuple[str, ...]  # ids of alerts that it updates or cancels
     warnings: tuple[str, ...]
+    warning_codes: tuple[TextCode, ...]  # of ``warnings``, in their order
 
 
 def marker_ids(alert_id: str) -> tuple[str, ...]:
@@ -51,9 +53,21 @@ def read_alert(body: bytes, now_ns: int) -> CapAlert:
     try:
         alert = fromstring(body, forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError, LookupError) as error:
-        raise WireError(f"the body is no XML that is accepted: {error!r}") from error
+        raise WireError(
+            coded(
+                "alert-no-xml",
+                "The body is no XML that is accepted: {error}.",
+                error=repr(error),
+            )
+        ) from error
     if local_name(alert) != "alert":
-        raise WireError(f"the body is no CAP alert: its root is {local_name(alert)[:40]!r}")
+        raise WireError(
+            coded(
+                "alert-no-cap",
+                "The body is no CAP alert: its root is {root!r}.",
+                root=local_name(alert)[:40],
+            )
+        )
     return _AlertReader(alert, now_ns).read()
 
 
@@ -67,7 +81,9 @@ class _AlertReader:
     def _identity(self, name: str) -> str:
         text = _text(self._alert, name)
         if not 0 < len(text) <= _ID_CHARACTERS:
-            raise WireError(f"the alert has no {name}; nothing was taken")
+            raise WireError(
+                coded("alert-no-id", "The alert has no {part}; nothing was taken.", part=name)
+            )
         return text
 
     def read(self) -> CapAlert:
@@ -92,14 +108,23 @@ class _AlertReader:
         kind = _text(self._alert, "msgType")
         replaces = _text(self._alert, "status") == "Actual" and kind in {"Update", "Cancel"}
         replaced = tuple(self._references()) if replaces else ()
-        return CapAlert(self._id, outcome, markers, replaced, self._parts.warnings)
+        warnings, codes = self._parts.warnings, self._parts.warning_codes
+        return CapAlert(self._id, outcome, markers, replaced, warnings, codes)
 
     def _references(self) -> Iterator[str]:
         references = _text(self._alert, "references").split()
         if not references:
-            self._parts.warn("it names no alert that it updates or cancels")
+            self._parts.warn(
+                coded("alert-no-references", "it names no alert that it updates or cancels")
+            )
         if len(references) > MOST_REFERENCES:
-            self._parts.warn(f"only the last {MOST_REFERENCES} references are followed")
+            self._parts.warn(
+                coded(
+                    "alert-too-many-references",
+                    "only the last {most} references are followed",
+                    most=MOST_REFERENCES,
+                )
+            )
         for reference in references[-MOST_REFERENCES:]:
             sender, _, rest = reference.partition(",")
             yield f"{sender},{rest.partition(',')[0]}"
@@ -121,10 +146,20 @@ class _AlertReader:
                 raise ValueError(expires)
             ends_ns = (at - _EPOCH) // timedelta(seconds=1) * NS_PER_S
         except ValueError:
-            self._parts.warn("expires is no time with its zone; it counts for a day")
+            self._parts.warn(
+                coded(
+                    "alert-expiry-unreadable",
+                    "expires is no time with its zone; it counts for a day",
+                )
+            )
             return sent_ns + _UNLIMITED_NS
         if ends_ns > self._now_ns + _LONGEST_NS:
-            self._parts.warn("it expires in more than a week; it is shown for a week")
+            self._parts.warn(
+                coded(
+                    "alert-expiry-far",
+                    "it expires in more than a week; it is shown for a week",
+                )
+            )
         return min(ends_ns, self._now_ns + _LONGEST_NS)
 
     def _markers(self, info: ET.Element, sent_ns: int, ends_ns: int) -> Iterator[ExternalMarker]:
@@ -133,8 +168,14 @@ class _AlertReader:
             (area, circle) for area in _children(info, "area") for circle in self._circles(area)
         ]
         if len(circles) > MOST_SHAPES:
-            rest = len(circles) - MOST_SHAPES
-            self._parts.warn(f"{rest} areas beyond the first {MOST_SHAPES} are left out")
+            self._parts.warn(
+                coded(
+                    "alert-too-many-areas",
+                    "{count} areas beyond the first {most} are left out",
+                    count=len(circles) - MOST_SHAPES,
+                    most=MOST_SHAPES,
+                )
+            )
         ids = marker_ids(self._id)
         for (area, (lat_deg, lon_deg, radius_m)), marker_id in zip(circles, ids, strict=False):
             words = (_text(info, tag) for tag in ("severity", "description", "instruction"))
@@ -162,20 +203,27 @@ class _AlertReader:
             if len(corners) == 1 and radius_km and 0.0 <= radius_km[0][0] < 20_000.0:
                 yield from self._circle(corners, 1000.0 * radius_km[0][0])
             else:
-                self._parts.warn("a circle cannot be read and is left out")
+                self._parts.warn(
+                    coded("alert-circle-unreadable", "a circle cannot be read and is left out")
+                )
         for shape in _children(area, "polygon"):
             corners = _numbers(shape.text or "")
             if len(corners) >= 4 and corners[0] == corners[-1]:
                 yield from self._circle(corners[:-1], 0.0)
             else:
-                self._parts.warn("a polygon cannot be read or is not closed, and is left out")
+                self._parts.warn(
+                    coded(
+                        "alert-polygon-unreadable",
+                        "a polygon cannot be read or is not closed, and is left out",
+                    )
+                )
 
     def _circle(
         self, corners: Sequence[tuple[float, float]], radius_m: float
     ) -> Iterator[tuple[float, float, float]]:
         lat = sum(one[0] for one in corners) / len(corners)
         lon = sum(one[1] for one in corners) / len(corners)
-        lat_deg, lon_deg = self._parts.position_deg(lat, lon, "an area's middle")
+        lat_deg, lon_deg = self._parts.position_deg(lat, lon, "area")
         if lat_deg is not None and lon_deg is not None:
             far_m = max(_distance_m((lat_deg, lon_deg), one) for one in corners)
             yield lat_deg, lon_deg, radius_m + far_m

@@ -14,6 +14,7 @@ from typing import Any
 
 from base_station.dispatch.location import Location, read_location
 from base_station.dispatch.report_parts import REMARKS_CHARACTERS, ReportParts
+from shared.coded_text import coded
 from shared.messages.station import NoteDispatch
 
 _URN = "urn:emergency:uid:incidentid:"
@@ -35,9 +36,7 @@ def read_eido(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
     incident = next(iter(_components(eido, "incidentComponent")), {})
     tracking_id = eido.get("incidenttrackingidentifier") or eido.get("$id")
     own_id = str(tracking_id).removeprefix(_URN) if isinstance(tracking_id, str) else None
-    number = parts.number(
-        incident.get("internalincidentid") or own_id, "internalIncidentId or the EIDO's $id"
-    )
+    number = parts.number(incident.get("internalincidentid") or own_id, "internalIncidentId / $id")
     address, lat_deg, lon_deg = _place(eido, incident, parts)
     common = _texts(incident.get("incidenttypecommonregistrytext"))
     resources = _components(eido, "emergencyResourceComponent")
@@ -84,21 +83,32 @@ def _place(
         found = _location(one, parts)
         if (found.address or found.position_deg) and _is_of_others(one):
             kind = one["locationtypedescriptionregistrytext"]
-            parts.warn(f"the place is that of the call ({kind}), not surely of the incident")
+            parts.warn(
+                coded(
+                    "report-place-of-call",
+                    "the place is that of the call ({kind}), not surely of the incident",
+                    kind=kind,
+                )
+            )
         address = address or found.address
         position_deg = position_deg or found.position_deg
         if address and position_deg:
             break
     lat_deg, lon_deg = position_deg or (None, None)
-    return parts.text(address, "the address"), lat_deg, lon_deg
+    return parts.text(address, "civicAddress"), lat_deg, lon_deg
 
 
 def _location(location: Component, parts: ReportParts) -> Location:
     value = location.get("locationbyvalue")
     if isinstance(value, str) and value.strip():
-        return read_location(value, parts, "a locationByValue")
+        return read_location(value, parts, "locationByValue")
     if location.get("locationbyreferenceurl"):
-        parts.warn("a location is given by an address of another server, and is not fetched")
+        parts.warn(
+            coded(
+                "report-place-elsewhere",
+                "a location is given by an address of another server, and is not fetched",
+            )
+        )
     return Location()
 
 

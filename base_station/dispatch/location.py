@@ -11,6 +11,7 @@ from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
 from base_station.dispatch.report_parts import ReportParts
+from shared.coded_text import coded
 
 _NUMBER = ("HNO", "HNS")
 _STREET = ("PRD", "PRM", "STP", "RD", "STS", "POD")
@@ -31,7 +32,14 @@ def read_location(xml: str, parts: ReportParts, name: str) -> Location:
     try:
         presence = fromstring(xml.strip(), forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError, LookupError) as error:
-        parts.warn(f"{name} cannot be read ({error}) and is left out")
+        parts.warn(
+            coded(
+                "location-unreadable",
+                "{part} cannot be read ({error}) and is left out",
+                part=name,
+                error=str(error),
+            )
+        )
         return Location()
     return Location(_address(presence), _position_deg(presence, parts, name))
 
@@ -56,7 +64,14 @@ def _position_deg(
     for shape in presence.iter():
         system = shape.get("srsName")
         if system is not None and not _WGS_84.search(system):
-            parts.warn(f"{name} is in {system[:80]}, not in WGS-84, and is left out")
+            parts.warn(
+                coded(
+                    "location-other-system",
+                    "{part} is in {system}, not in WGS-84, and is left out",
+                    part=name,
+                    system=system[:80],
+                )
+            )
             return None
     points = [(one.text or "").split()[:2] for one in _elements(presence, "pos")]
     for one in _elements(presence, "posList"):
@@ -67,7 +82,13 @@ def _position_deg(
     try:
         corners = [(float(lat), float(lon)) for lat, lon in points]
     except ValueError:
-        parts.warn(f"{name} has a position that is no number and is left out")
+        parts.warn(
+            coded(
+                "location-no-number",
+                "{part} has a position that is no number and is left out",
+                part=name,
+            )
+        )
         return None
     # A polygon is closed: its last corner is its first one.
     distinct = corners[:-1] if len(corners) > 1 and corners[0] == corners[-1] else corners

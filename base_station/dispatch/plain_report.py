@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from base_station.dispatch.report_parts import REMARKS_CHARACTERS, ReportParts
+from shared.coded_text import coded
 from shared.messages.station import NoteDispatch
 
 _FIELDS = frozenset(
@@ -21,15 +22,23 @@ def read_plain(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
     number = parts.number(body.get("number"), '"number"')
     unknown = sorted(name for name in body if name not in _FIELDS)
     if unknown:
-        parts.warn(f"fields that are not known are left out: {', '.join(unknown)[:200]}")
+        parts.warn(
+            coded(
+                "report-unknown-fields",
+                "fields that are not known are left out: {fields}",
+                fields=", ".join(unknown)[:200],
+            )
+        )
     lat_deg, lon_deg = _position(body.get("position"), parts)
     units = body.get("units") or []
     if not isinstance(units, list):
-        parts.warn('"units" is no list and is left out')
+        parts.warn(coded("report-units-no-list", '"units" is no list and is left out'))
         units = []
     has_ended = body.get("ended", False)
     if not isinstance(has_ended, bool):
-        parts.warn('"ended" is neither true nor false and is left out')
+        parts.warn(
+            coded("report-ended-no-flag", '"ended" is neither true nor false and is left out')
+        )
         has_ended = False
     return NoteDispatch(
         number,
@@ -40,7 +49,7 @@ def read_plain(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
         address=parts.text(body.get("address"), '"address"'),
         lat_deg=lat_deg,
         lon_deg=lon_deg,
-        units=parts.call_signs(units, 'an entry of "units"'),
+        units=parts.call_signs(units, '"units"'),
         called_ns=parts.time_ns(body.get("called"), '"called"'),
         dispatched_ns=parts.time_ns(body.get("dispatched"), '"dispatched"'),
         updated_ns=parts.time_ns(body.get("updated"), '"updated"'),
@@ -53,6 +62,11 @@ def _position(value: Any, parts: ReportParts) -> tuple[float, float] | tuple[Non
     if value is None:
         return None, None
     if not isinstance(value, dict):
-        parts.warn('"position" is no object with lat_deg and lon_deg and is left out')
+        parts.warn(
+            coded(
+                "report-position-no-object",
+                '"position" is no object with lat_deg and lon_deg and is left out',
+            )
+        )
         return None, None
     return parts.position_deg(value.get("lat_deg"), value.get("lon_deg"), '"position"')

@@ -10,6 +10,7 @@ from base_station.dispatch.config import DispatchConfig
 from base_station.dispatch.eido import is_eido, read_eido
 from base_station.dispatch.plain_report import read_plain
 from base_station.dispatch.report_parts import ReportParts
+from shared.coded_text import coded
 from shared.errors import WireError
 from shared.messages.station import NoteDispatch
 
@@ -25,9 +26,20 @@ def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatc
     try:
         content = msgspec.json.decode(body)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise WireError(f"the body is no JSON that can be read: {error}") from error
+        raise WireError(
+            coded(
+                "report-json-unreadable",
+                "The body is no JSON that can be read: {error}.",
+                error=str(error),
+            )
+        ) from error
     if not isinstance(content, dict):
-        raise WireError("the body is no JSON object: send an EIDO, or an object with a number")
+        raise WireError(
+            coded(
+                "report-no-object",
+                "The body is no JSON object: send an EIDO, or an object with a number.",
+            )
+        )
     parts = ReportParts(now_ns)
     report = read_eido(content, parts) if is_eido(content) else read_plain(content, parts)
     return msgspec.structs.replace(
@@ -35,6 +47,7 @@ def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatc
         type=type_in_words(report, config),
         updated_ns=report.updated_ns or now_ns,
         warnings=parts.warnings,
+        warning_codes=parts.warning_codes,
     )
 
 

@@ -11,6 +11,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from shared.clock import NS_PER_MS, NS_PER_S
+from shared.coded_text import CodedText, TextCode, code_of_text, coded
 from shared.errors import WireError
 
 NUMBER_CHARACTERS, TEXT_CHARACTERS, REMARKS_CHARACTERS = 128, 200, 1000
@@ -28,15 +29,25 @@ class ReportParts:
     def __init__(self, now_ns: int) -> None:
         """``now_ns``: station time (UTC)."""
         self._now_ns = now_ns
-        self._warnings: dict[str, None] = {}
+        self._warnings: dict[CodedText, None] = {}
 
     @property
     def warnings(self) -> tuple[str, ...]:
+        return tuple(map(str, self._first_warnings()))
+
+    @property
+    def warning_codes(self) -> tuple[TextCode, ...]:
+        """Of ``warnings``, in their order."""
+        return tuple(map(code_of_text, self._first_warnings()))
+
+    def _first_warnings(self) -> tuple[str, ...]:
         found = tuple(self._warnings)
         rest = len(found) - MOST_WARNINGS
-        return found if rest <= 0 else (*found[:MOST_WARNINGS], f"{rest} more warnings")
+        if rest <= 0:
+            return found
+        return (*found[:MOST_WARNINGS], coded("more-warnings", "{count} more warnings", count=rest))
 
-    def warn(self, warning: str) -> None:
+    def warn(self, warning: CodedText) -> None:
         self._warnings[warning] = None
 
     def number(self, value: Any, name: str) -> str:
@@ -44,8 +55,13 @@ class ReportParts:
         text = plain(str(value)) if _is_text(value) else ""
         if not 0 < len(text) <= NUMBER_CHARACTERS:
             raise WireError(
-                f"the report has no number: give {name}, 1 to {NUMBER_CHARACTERS} characters; "
-                "nothing was taken"
+                coded(
+                    "report-no-number",
+                    "The report has no number: give {part}, 1 to {longest} characters; nothing "
+                    "was taken.",
+                    part=name,
+                    longest=NUMBER_CHARACTERS,
+                )
             )
         return text
 
@@ -53,11 +69,18 @@ class ReportParts:
         if value is None:
             return ""
         if not _is_text(value):
-            self.warn(f"{name} is no text and is left out")
+            self.warn(coded("report-no-text", "{part} is no text and is left out", part=name))
             return ""
         text = plain(str(value))
         if len(text) > longest:
-            self.warn(f"{name} is longer than {longest} characters and is cut off")
+            self.warn(
+                coded(
+                    "report-text-too-long",
+                    "{part} is longer than {longest} characters and is cut off",
+                    part=name,
+                    longest=longest,
+                )
+            )
         return text[:longest]
 
     def call_signs(self, values: Iterable[Any], name: str) -> tuple[str, ...]:
@@ -68,7 +91,14 @@ class ReportParts:
             if text:
                 found[text] = None
         if len(found) > MOST_UNITS:
-            self.warn(f"{len(found) - MOST_UNITS} units beyond the first {MOST_UNITS} are left out")
+            self.warn(
+                coded(
+                    "report-too-many-units",
+                    "{count} units beyond the first {most} are left out",
+                    count=len(found) - MOST_UNITS,
+                    most=MOST_UNITS,
+                )
+            )
         return tuple(found)[:MOST_UNITS]
 
     def time_ns(self, value: Any, name: str) -> int:
@@ -78,17 +108,37 @@ class ReportParts:
         try:
             at = datetime.fromisoformat(value)
         except (TypeError, ValueError):
-            self.warn(f"{name} is no time as 2026-03-01T14:02:11+01:00 and is left out")
+            self.warn(
+                coded(
+                    "report-no-time",
+                    "{part} is no time as 2026-03-01T14:02:11+01:00 and is left out",
+                    part=name,
+                )
+            )
             return 0
         if at.tzinfo is None:
-            self.warn(f"{name} has no time zone and is left out")
+            self.warn(coded("report-no-zone", "{part} has no time zone and is left out", part=name))
             return 0
         if not _FIRST <= at < _LAST:
-            self.warn(f"{name} ({value}) makes no sense and is left out")
+            self.warn(
+                coded(
+                    "report-time-odd",
+                    "{part} ({value}) makes no sense and is left out",
+                    part=name,
+                    value=value,
+                )
+            )
             return 0
         t_ns = (at - _EPOCH) // timedelta(milliseconds=1) * NS_PER_MS
         if t_ns > self._now_ns + _AHEAD_NS:
-            self.warn(f"{name} ({value}) is more than a day ahead and is left out")
+            self.warn(
+                coded(
+                    "report-time-ahead",
+                    "{part} ({value}) is more than a day ahead and is left out",
+                    part=name,
+                    value=value,
+                )
+            )
             return 0
         return t_ns
 
@@ -97,13 +147,33 @@ class ReportParts:
     ) -> tuple[float, float] | tuple[None, None]:
         """Latitude and longitude (WGS-84)."""
         if not _is_number(lat) or not _is_number(lon):
-            self.warn(f"{name} is no latitude and longitude and is left out")
+            self.warn(
+                coded(
+                    "report-no-position",
+                    "{part} is no latitude and longitude and is left out",
+                    part=name,
+                )
+            )
             return None, None
         if abs(lat) > 90.0 or abs(lon) > 180.0:
-            self.warn(f"{name} ({lat}, {lon}) is no place on the Earth and is left out")
+            self.warn(
+                coded(
+                    "report-not-on-earth",
+                    "{part} ({lat_deg}, {lon_deg}) is no place on the Earth and is left out",
+                    part=name,
+                    lat_deg=lat,
+                    lon_deg=lon,
+                )
+            )
             return None, None
         if abs(lat) < _NOWHERE_DEG and abs(lon) < _NOWHERE_DEG:
-            self.warn(f"{name} is 0, 0, which stands for no place, and is left out")
+            self.warn(
+                coded(
+                    "report-position-zero",
+                    "{part} is 0, 0, which stands for no place, and is left out",
+                    part=name,
+                )
+            )
             return None, None
         return float(lat), float(lon)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from base_station.importers.interface import Importer, ImportOptions, TrackPoints
+from base_station.importers.interface import Importer, ImportOptions, TrackPoints, nothing_usable
 from base_station.importers.xml_elements import elements_of, is_xml_of, point_of
 from base_station.storage.imports import ImportedContent, ImportedTrack
-from shared.errors import UserError
+from shared.coded_text import coded
 
 _POINTS, _TRACKS = frozenset({"trkpt", "rtept", "wpt"}), frozenset({"trk", "rte", "wpt"})
 
@@ -39,11 +39,23 @@ def read_gpx(path: Path, _: ImportOptions) -> ImportedContent:
     if found := points.take():  # of a track that the file breaks off in
         tracks.append(ImportedTrack(name or f"track {len(tracks) + 1}", found))
     if left_out:
-        damage.append(f"{left_out} points without a place or a time are left out")
+        damage.append(
+            coded(
+                "import-points-left-out",
+                "{count} points without a place or a time are left out",
+                count=left_out,
+            )
+        )
     if not tracks:
-        advice = "save it again as a recorded track, with times"
-        raise UserError("; ".join((*damage, f"no point of it has a place and a time: {advice}")))
-    return ImportedContent(GPX.name, tuple(tracks), tuple(damage))
+        raise nothing_usable(
+            damage,
+            coded(
+                "import-no-point",
+                "no point of it has a place and a time: save it again as a recorded track, with "
+                "times",
+            ),
+        )
+    return ImportedContent(GPX.name, tuple(tracks)).with_warnings(damage)
 
 
 GPX = Importer("gpx", lambda head: is_xml_of(head, "gpx"), read_gpx)

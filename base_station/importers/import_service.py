@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-import msgspec
-
 from base_station.importers.interface import ImportOptions
 from base_station.importers.process import content_of
 from base_station.storage.db.imports import ImportCatalogue
@@ -116,7 +114,7 @@ class ImportService:
                     reason=text_of_error(error),
                 )
             ) from error
-        return msgspec.structs.replace(content, warnings=(*content.warnings, *self._far(content)))
+        return content.with_warnings(self._far(content))
 
     def _require_time(self, content: ImportedContent) -> None:
         first_ns, last_ns = content.span_ns
@@ -148,7 +146,13 @@ class ImportService:
         nearest_m = min(map(math.hypot, north_m, east_m))
         if nearest_m < FAR_M:
             return ()
-        return (f"it begins {nearest_m / 1000.0:.0f} km away from the incident's site",)
+        return (
+            coded(
+                "import-far",
+                "it begins {away_km} away from the incident's site",
+                away_km=Measure(nearest_m / 1000.0, f"{nearest_m / 1000.0:.0f} km"),
+            ),
+        )
 
 
 def _require_same_shift(entry: ImportRow, options: ImportOptions) -> None:

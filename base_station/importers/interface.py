@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import msgspec
 
 from base_station.storage.imports import ImportedContent, ImportedPoint
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import coded, join_texts
 from shared.errors import UserError
 
 MOST_BYTES = 512 << 20  # of a file
@@ -36,6 +36,17 @@ class Importer:
     name: str  # of the format
     matches: Callable[[bytes], bool]  # by the first bytes of a file
     read: Callable[[Path, ImportOptions], ImportedContent]
+
+
+def nothing_usable(damage: Sequence[str], reason: str) -> UserError:
+    """The error for a file of which nothing is taken, with its damage, which may be why."""
+    if not damage:
+        return UserError(reason)
+    return UserError(
+        coded(
+            "import-nothing-usable", "{damage}; {reason}", damage=join_texts(damage), reason=reason
+        )
+    )
 
 
 class TrackPoints:

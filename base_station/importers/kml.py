@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import zip_longest
 from pathlib import Path
 
-from base_station.importers.interface import Importer, ImportOptions, TrackPoints
+from base_station.importers.interface import Importer, ImportOptions, TrackPoints, nothing_usable
 from base_station.importers.xml_elements import XmlElement, elements_of, is_xml_of, point_of
 from base_station.storage.imports import ImportedContent, ImportedTrack
-from shared.errors import UserError
+from shared.coded_text import coded
 
 
 def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
@@ -32,11 +32,22 @@ def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
     if found := points.take():
         tracks.append(ImportedTrack(placemark.name or f"placemark {len(tracks) + 1}", found))
     if left_out:
-        damage.append(f"{left_out} places without a time are left out")
+        damage.append(
+            coded(
+                "import-places-left-out",
+                "{count} places without a time are left out",
+                count=left_out,
+            )
+        )
     if not tracks:
-        advice = "save it again as a track with times"
-        raise UserError("; ".join((*damage, f"no place of it has a time: {advice}")))
-    return ImportedContent(KML.name, tuple(tracks), tuple(damage))
+        raise nothing_usable(
+            damage,
+            coded(
+                "import-no-timed-place",
+                "no place of it has a time: save it again as a track with times",
+            ),
+        )
+    return ImportedContent(KML.name, tuple(tracks)).with_warnings(damage)
 
 
 class _Placemark:

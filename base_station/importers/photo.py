@@ -21,7 +21,10 @@ PICTURE_SIDE_PX = 320
 _FORMATS = ("JPEG", "PNG", "TIFF", "WEBP")
 _BEGINNINGS = (b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n", b"II*\0", b"MM\0*", b"RIFF")
 _BELOW_SEA = 1
-_OF_FIX = "its time is that of the camera's satellite fix; it may have been taken later"
+_OF_FIX = coded(
+    "import-time-of-fix",
+    "its time is that of the camera's satellite fix; it may have been taken later",
+)
 _Tags = dict[int, Any]
 
 
@@ -55,7 +58,8 @@ def read_photo(path: Path, options: ImportOptions) -> ImportedContent:
         ) from error
     point = ImportedPoint(t_ns, lat_deg, lon_deg, _height_m(gps))
     track = ImportedTrack(options.file_name, (point,))
-    return ImportedContent(PHOTO.name, (track,), (warning,) if warning else (), picture)
+    content = ImportedContent(PHOTO.name, (track,), picture=picture)
+    return content.with_warnings((warning,) if warning else ())
 
 
 def _place(gps: _Tags) -> tuple[float, float]:

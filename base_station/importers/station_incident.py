@@ -10,7 +10,7 @@ from pathlib import Path
 
 from base_station.core.events import Received, Rejected, StationEvent, event_of
 from base_station.core.person_references import with_names
-from base_station.importers.interface import Importer, ImportOptions, TrackPoints
+from base_station.importers.interface import Importer, ImportOptions, TrackPoints, nothing_usable
 from base_station.replay.incident_file import IncidentInFile, read_incident_file
 from base_station.storage.imports import ImportedContent, ImportedPoint, ImportedTrack
 from shared.channels import FUSED, OPERATOR
@@ -52,19 +52,44 @@ def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent
             event = event_of(*record)
             newer += isinstance(event, Rejected)
             found.take(event)
-        damage = list(dict.fromkeys(reader.damage))
+        damage: list[str] = [
+            coded("import-part-damaged", "a part of it cannot be read: {damage}", damage=one)
+            for one in dict.fromkeys(reader.damage)
+        ]
     if whole is None:
-        damage.insert(0, "the file is not complete: names of people and what came last are lost")
+        damage.insert(
+            0,
+            coded(
+                "import-incomplete",
+                "the file is not complete: names of people and what came last are lost",
+            ),
+        )
     if newer:
-        damage.append(f"{newer} records could not be read: another version of Muster wrote them")
+        damage.append(
+            coded(
+                "import-other-version",
+                "{count} records could not be read: another version of Muster wrote them",
+                count=newer,
+            )
+        )
     if found.unplaced:
-        damage.append(f"{found.unplaced} positions of before its site was placed are left out")
+        damage.append(
+            coded(
+                "import-unplaced",
+                "{count} positions of before its site was placed are left out",
+                count=found.unplaced,
+            )
+        )
     tracks = tuple(found.tracks())
     if not tracks:
-        raise UserError(
-            "; ".join((*damage, "no track in it has a place on the Earth: its site has no anchor"))
+        raise nothing_usable(
+            damage,
+            coded(
+                "import-track-unplaced",
+                "no track in it has a place on the Earth: its site has no anchor",
+            ),
         )
-    return ImportedContent(INCIDENT.name, tracks, tuple(damage))
+    return ImportedContent(INCIDENT.name, tracks).with_warnings(damage)
 
 
 def _incident_in_torn(path: Path) -> IncidentInFile:

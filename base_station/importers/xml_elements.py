@@ -66,7 +66,13 @@ def elements_of(path: Path, damage: list[str]) -> Iterator[XmlElement]:
             )
         ) from error
     except (ParseError, ValueError) as error:
-        damage.append(f"it cannot be read to its end ({error}): what stands behind is lost")
+        damage.append(
+            coded(
+                "import-breaks-off",
+                "it cannot be read to its end ({error}): what stands behind is lost",
+                error=str(error),
+            )
+        )
 
 
 def local_name(element: Element) -> str:

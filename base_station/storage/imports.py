@@ -20,7 +20,7 @@ from typing import TypeVar
 import msgspec
 
 from base_station.storage.private_files import write_atomically
-from shared.coded_text import Measure, coded
+from shared.coded_text import Measure, TextCode, code_of_text, coded
 from shared.durable_names import sync_folder
 from shared.errors import StoreError
 from shared.file_faults import making_fault, removal_fault
@@ -59,6 +59,7 @@ class ImportSummary(msgspec.Struct, frozen=True):
     tracks: int
     names: tuple[str, ...]  # of the first tracks
     warnings: tuple[str, ...]
+    warning_codes: tuple[TextCode, ...] = ()  # of ``warnings``, in their order
 
 
 class ImportedContent(msgspec.Struct, frozen=True):
@@ -68,11 +69,21 @@ class ImportedContent(msgspec.Struct, frozen=True):
     tracks: tuple[ImportedTrack, ...]
     warnings: tuple[str, ...] = ()
     picture: bytes | None = None  # small JPEG, of a photograph
+    warning_codes: tuple[TextCode, ...] = ()  # of ``warnings``, in their order
 
     @property
     def summary(self) -> ImportSummary:
         names = tuple(track.name for track in self.tracks[:_MOST_NAMES])
-        return ImportSummary(len(self.tracks), names, self.warnings)
+        return ImportSummary(len(self.tracks), names, self.warnings, self.warning_codes)
+
+    def with_warnings(self, warnings: Iterable[str]) -> ImportedContent:
+        """With more warnings, and their codes."""
+        more = tuple(warnings)
+        return msgspec.structs.replace(
+            self,
+            warnings=(*self.warnings, *map(str, more)),
+            warning_codes=(*self.warning_codes, *map(code_of_text, more)),
+        )
 
     @property
     def span_ns(self) -> tuple[int, int]:

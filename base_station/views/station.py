@@ -159,6 +159,7 @@ def dispatch_view(report: NoteDispatch, people: PersonLookup) -> DispatchView:
         remarks=shown_text(report.remarks, people),
         has_ended=report.has_ended,
         warnings=report.warnings,
+        warning_codes=tuple(map(text_code_view, report.warning_codes)),
     )
 
 

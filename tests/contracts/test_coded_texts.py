@@ -27,6 +27,8 @@ PARTS = (
     "drawing_notes",
     "pin_reasons",
     "transfer_problems",
+    "dispatch_warnings",
+    "import_warnings",
     *(
         f"refusals_{area}"
         for area in ("access", "people", "incident", "plan", "past", "station", "form")

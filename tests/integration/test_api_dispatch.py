@@ -53,11 +53,14 @@ async def test_dispatch_is_offered_updated_and_opened_by_a_user(
         ]
         clock.advance(5.0)
         assert (await post(client))["outcome"] == "unchanged"
-        assert (await post(client, remarks="smoke"))["outcome"] == "updated"
+        smoke = await post(client, remarks="smoke", called="yesterday")
+        assert (smoke["outcome"], len(smoke["warnings"])) == ("updated", 1)
+        assert [one["code"] for one in smoke["warning_codes"]] == ["report-no-time"]
         older = await post(client, remarks="none", updated="2020-01-01T00:00:00Z")
         assert older["outcome"] == "outdated"
         (offered,) = (await client.get("/dispatch")).json()
         assert offered["dispatch"]["remarks"] == "smoke"
+        assert offered["dispatch"]["warning_codes"] == smoke["warning_codes"]
         assert offered["call_signs"] == first["units"]
         new = {"name": "Main St 5", "dispatch_number": "2026/1234"}
         incident = (await client.post("/incidents", json=new)).json()
@@ -133,6 +136,7 @@ async def test_invalid_bodies_are_refused_with_a_reason(station: InProcessStatio
             answer = await client.post(path, content=content, headers=headers)
             assert answer.status_code == status, (path, content[:30], answer.text)
             assert answer.json()["detail"].endswith("."), content[:30]
+            assert answer.json()["code"], content[:30]
         assert (await client.get("/dispatch")).json() == []
 
 

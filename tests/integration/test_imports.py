@@ -104,6 +104,12 @@ async def test_file_is_imported_once_shown_on_the_plan_and_removed(
     assert one["sha256"] == hashlib.sha256(track).hexdigest()
     assert (one["by"], one["file_name"], one["names"]) == ("commander", "drone.gpx", ["Drone"])
     assert (one["from_ms"], one["tracks"], one["is_here"]) == (now_s * 1000, 1, True)
+    untimed = write_gpx(tmp_path / "walk.gpx", "Walk", line(now_s, 2)).read_text()
+    untimed = untimed.replace("</trkseg>", '<trkpt lat="52" lon="4"/></trkseg>')
+    walk = await commander.post(imports, params={"file_name": "walk.gpx"}, content=untimed)
+    assert walk.json()["warnings"] == ["1 points without a place or a time are left out"]
+    assert [one["code"] for one in walk.json()["warning_codes"]] == ["import-points-left-out"]
+    assert (await commander.delete(f"{imports}/{walk.json()['import_id']}")).status_code == 204
 
     path = f"{imports}/{one['import_id']}"
     (shown,) = (await commander.get(f"{path}/tracks")).json()["tracks"]

@@ -45,6 +45,7 @@ LIVE_FIELDS: Mapping[str, str] = {
     "updated_ms": "When the dispatch centre changed it last; null: not known.",
     "has_ended": "The dispatch centre has closed or cancelled it.",
     "warnings": "Parts of the report that were left out, in words.",
+    "warning_codes": "Codes of warnings, in their order, for texts in other languages.",
     "is_dismissed": "Somebody decided that it opens no incident here.",
     "DispatchView.units": "Call signs of vehicles or crews.",
     "DispatchView.type": "Type of the incident, in words.",

@@ -16,6 +16,7 @@ FIELDS: Mapping[str, str] = {
     "DispatchReceipt.incident_id": "The open incident of this dispatch; null: none.",
     "DispatchReceipt.units": "The call signs of the report, and what the station knows by them.",
     "warnings": "Parts of the report that were left out, and why.",
+    "warning_codes": "Codes of warnings, in their order, for texts in other languages.",
     "dispatch": "The newest report.",
     "call_signs": "The call signs of the report, and what the station knows by them.",
     "call_sign": "As the dispatch centre has it.",

@@ -23,8 +23,9 @@ from base_station.dispatch.call_signs import MatchedCallSign
 from base_station.dispatch.cap import read_alert
 from base_station.dispatch.reading import read_report
 from base_station.views.answer import Answer
-from base_station.views.wire import DispatchView, Snapshot
-from shared.coded_text import coded
+from base_station.views.text_code import text_code_view
+from base_station.views.wire import DispatchView, Snapshot, TextCodeView
+from shared.coded_text import coded, text_of_error
 from shared.errors import WireError
 from shared.messages.station import DismissDispatch
 
@@ -53,6 +54,7 @@ class DispatchReceipt(Answer, frozen=True):
     incident_id: str | None
     units: tuple[CallSignAnswer, ...]
     warnings: tuple[str, ...]
+    warning_codes: tuple[TextCodeView, ...]
 
 
 class OfferedDispatch(Answer, frozen=True):
@@ -70,6 +72,7 @@ class AlertReceipt(Answer, frozen=True):
     markers: int
     replaced: tuple[str, ...]
     warnings: tuple[str, ...]
+    warning_codes: tuple[TextCodeView, ...]
 
 
 async def _body(request: Request) -> bytes:
@@ -95,7 +98,7 @@ def post_dispatch(
     try:
         report = read_report(body, station.dispatch, station.clock.utc_ns())
     except WireError as error:
-        raise Problem(422, _sentence(error)) from error
+        raise Problem(422, text_of_error(error)) from error
     outcome = take_report(station, perform, report)
     picture = station.picture()
     incident = open_incident_of(picture, report.number)
@@ -105,6 +108,7 @@ def post_dispatch(
         incident_id=None if incident is None else incident.incident_id,
         units=_call_signs(station, picture, report.units),
         warnings=report.warnings,
+        warning_codes=tuple(map(text_code_view, report.warning_codes)),
     )
 
 
@@ -143,11 +147,13 @@ def post_alert(request: Request, station: Station, who: Commander, body: _Body) 
     """
     _require_type(request, _ALERT_TYPES)
     if station.alerts is None:
-        raise Problem(409, "This station takes no alerts: it only replays.")
+        raise Problem(
+            409, coded("alerts-not-taken", "This station takes no alerts: it only replays.")
+        )
     try:
         alert = station.alerts.take(read_alert(body, station.clock.utc_ns()))
     except WireError as error:
-        raise Problem(422, _sentence(error)) from error
+        raise Problem(422, text_of_error(error)) from error
     station.records.audit(who.username, "PostedAlert", f"{alert.alert_id}: {alert.outcome}")
     return AlertReceipt(
         alert_id=alert.alert_id,
@@ -155,18 +161,21 @@ def post_alert(request: Request, station: Station, who: Commander, body: _Body) 
         markers=len(alert.markers),
         replaced=alert.replaced,
         warnings=alert.warnings,
+        warning_codes=tuple(map(text_code_view, alert.warning_codes)),
     )
 
 
 def _require_type(request: Request, media_types: tuple[str, ...]) -> None:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type not in media_types:
-        raise Problem(415, f"Send it as {' or '.join(media_types)} (header Content-Type).")
-
-
-def _sentence(error: WireError) -> str:
-    text = str(error)
-    return f"{text[:1].upper()}{text[1:]}."
+        raise Problem(
+            415,
+            coded(
+                "media-type-other",
+                "Send it as one of {types} (header Content-Type).",
+                types=", ".join(media_types),
+            ),
+        )
 
 
 def _call_signs(

@@ -25,6 +25,8 @@ from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import ImportRow, IncidentRow
 from base_station.storage.imports import ImportedContent
 from base_station.views.answer import Answer, to_ms
+from base_station.views.text_code import text_code_view
+from base_station.views.wire import TextCodeView
 from shared.coded_text import coded, text_of_error
 from shared.errors import UserError
 from shared.geo import Anchor
@@ -58,6 +60,7 @@ class ImportAnswer(BaseModel):
     tracks: int
     names: list[str]  # of the first hundred tracks
     warnings: list[str]
+    warning_codes: list[TextCodeView]
 
 
 class ImportedTrackAnswer(Answer, frozen=True):
@@ -265,4 +268,5 @@ def _answer(station: Services, catalogue: ImportCatalogue, row: ImportRow) -> Im
         tracks=0 if summary is None else summary.tracks,
         names=[] if summary is None else list(summary.names),
         warnings=[] if summary is None else list(summary.warnings),
+        warning_codes=[] if summary is None else list(map(text_code_view, summary.warning_codes)),
     )

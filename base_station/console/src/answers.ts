@@ -80,6 +80,7 @@ export interface AlertReceipt {
   markers: number;
   replaced: string[];
   warnings: string[];
+  warning_codes: TextCodeView[];
 }
 
 export interface AllClear {
@@ -229,6 +230,7 @@ export interface DispatchReceipt {
   incident_id: string | null;
   units: CallSignAnswer[];
   warnings: string[];
+  warning_codes: TextCodeView[];
 }
 
 export interface DispatchView {
@@ -249,6 +251,7 @@ export interface DispatchView {
   warnings: string[];
   received_ms: number | null;
   is_dismissed: boolean;
+  warning_codes: TextCodeView[];
 }
 
 export interface DrawnPictureAnswer {
@@ -357,6 +360,7 @@ export interface ImportAnswer {
   tracks: number;
   names: string[];
   warnings: string[];
+  warning_codes: TextCodeView[];
 }
 
 export interface ImportedTrackAnswer {

@@ -221,6 +221,7 @@ export interface DispatchView {
   warnings: string[];
   received_ms: number | null;
   is_dismissed: boolean;
+  warning_codes: TextCodeView[];
 }
 
 export interface IncidentView {

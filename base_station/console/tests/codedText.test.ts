@@ -1,7 +1,7 @@
 /** Texts by the codes of the station, in every language. */
 import { afterEach, describe, expect, test } from "vitest";
 import { loadDeferred, show } from "../src/language/catalogue";
-import { codedText, preflightText, problemTexts, refusalText } from "../src/live/codedText";
+import { codedText, codedTexts, preflightText, problemTexts, refusalText } from "../src/live/codedText";
 
 const FULL = {
   code: "log-waits",
@@ -68,6 +68,16 @@ describe("a text of the station", () => {
     expect(codedText(fault, "battery BAT0: no reading: it was removed")).toBe(
       "Akku BAT0: kein Messwert: es wurde entfernt",
     );
+  });
+
+  test("says a long way in kilometres or miles", async () => {
+    const far = { code: "import-far", texts: {}, numbers: { away_km: 103.2 } };
+    await show("de");
+    await loadDeferred();
+    expect(codedTexts(["it begins 103 km away", "older"], [far])).toEqual([
+      "sie beginnt 103\u00a0km vom Ort des Einsatzes entfernt",
+      "older",
+    ]);
   });
 
   test("of a foreign unit with a code of ours and other parameters stays as the unit wrote it", async () => {

@@ -187,6 +187,7 @@ export function dispatch(number: string, change: Partial<DispatchView> = {}): Di
     warnings: [],
     received_ms: 0,
     is_dismissed: false,
+    warning_codes: [],
     ...change,
   };
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base_station.views.answer import Answer
+from base_station.views.wire.text_code import TextCodeView
 
 
 class DispatchView(Answer, frozen=True):
@@ -25,6 +26,7 @@ class DispatchView(Answer, frozen=True):
     warnings: tuple[str, ...]  # about parts that were left out
     received_ms: int | None = None  # None: it has opened an incident
     is_dismissed: bool = False
+    warning_codes: tuple[TextCodeView, ...] = ()  # of ``warnings``, in their order
 
 
 class IncidentView(Answer, frozen=True):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
+from shared.coded_text import TextCode
+
 
 class OpenIncident(msgspec.Struct, frozen=True):
     incident_id: str
@@ -47,6 +49,7 @@ class NoteDispatch(msgspec.Struct, frozen=True):
     remarks: str = ""
     has_ended: bool = False  # the dispatch centre has closed or cancelled it
     warnings: tuple[str, ...] = ()  # about parts of the report that were left out
+    warning_codes: tuple[TextCode, ...] = ()  # of ``warnings``, in their order
 
 
 class DismissDispatch(msgspec.Struct, frozen=True):

@@ -1,7 +1,7 @@
 /** Texts by the codes and parameters of the station.  Pure. */
 import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
 import type { PartName, DeferredPart } from "../language/catalogue";
-import { length, listed } from "../language/measures";
+import { far, length, listed } from "../language/measures";
 import { knownLabel, knownMessage, label, t } from "../language/translate";
 import type { HealthView, PreflightView, TextCodeView } from "../wire";
 
@@ -14,6 +14,8 @@ const PARTS = [
   "drawing_note",
   "pin_reason",
   "transfer_problem",
+  "dispatch_warning",
+  "import_warning",
   "refusal_access",
   "refusal_people",
   "refusal_incident",
@@ -34,6 +36,11 @@ export function codedText(coded: TextCodeView | undefined, text: string): string
   } catch {
     return text; // a unit that is not of this version gave other parameters than the message has
   }
+}
+
+/** Texts with their codes, in their order; of an earlier version there are no codes. */
+export function codedTexts(texts: readonly string[], codes: readonly TextCodeView[] = []): string[] {
+  return texts.map((text, index) => codedText(codes[index], text));
 }
 
 /** Values of the placeholders; a parameter that is a coded text itself in the chosen language, too. */
@@ -105,6 +112,7 @@ function shown(name: string, value: number): string | number {
   if (name.endsWith("_fraction")) return percent(value);
   if (name.endsWith("_degc")) return temperature(value);
   if (name.endsWith("_m")) return length(value, 0);
+  if (name.endsWith("_km")) return far(value * 1000);
   return name === "minutes" ? minutes(value * 60_000) : value;
 }
 
@@ -113,7 +121,7 @@ export function problemTexts(view: {
   problems: readonly string[];
   problem_codes?: readonly TextCodeView[];
 }): string[] {
-  return view.problems.map((text, index) => codedText(view.problem_codes?.[index], text));
+  return codedTexts(view.problems, view.problem_codes);
 }
 
 /** What is wrong with the station, sentence by sentence. */
@@ -127,7 +135,7 @@ type PreflightShown = Pick<PreflightView, "level" | "text"> & Partial<PreflightV
 
 /** Findings of a unit's check at its start. */
 export function preflightText({ level, text, findings = [], finding_codes = [] }: PreflightShown): string {
-  const found = findings.map((one, index) => codedText(finding_codes[index], one));
+  const found = codedTexts(findings, finding_codes);
   const joined = found.length === 0 ? text : found.join("; ");
   return t(level === "failed" ? "member.preflight_failed" : "member.preflight_warning", { text: joined });
 }

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, isPast, mayAct, namedIncident, picture } from "../sessions";
 import * as api from "../api";
+import { codedTexts } from "../live/codedText";
 import { dispatchOf, facts, positionWords, suggestedName, unitWords } from "../live/dispatch";
 import type { Picture } from "../live/picture";
 import { changeOf } from "../plan/anchor";
@@ -74,7 +75,7 @@ function Facts({ dispatch }: { dispatch: DispatchView }) {
           </div>
         )}
       </dl>
-      {dispatch.warnings.map((warning) => (
+      {codedTexts(dispatch.warnings, dispatch.warning_codes).map((warning) => (
         <p class="verdict conflict" key={warning}>
           {t("dispatch.warning", { warning })}
         </p>

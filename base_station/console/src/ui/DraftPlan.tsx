@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
-import { codedText } from "../live/codedText";
+import { codedTexts } from "../live/codedText";
 import { placeWords } from "../plan/anchor";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
@@ -80,9 +80,9 @@ export function DraftPlan({ file, shown, done }: Props) {
           </select>
         </label>
       )}
-      {read.notes.map((note, at) => (
+      {codedTexts(read.notes, read.note_codes).map((note) => (
         <p key={note} class="warned">
-          {codedText(read.note_codes[at], note)}
+          {note}
         </p>
       ))}
       {read.picture !== null && (

@@ -9,6 +9,7 @@ import {
   type ImportedFile,
 } from "../importedFiles";
 import { t } from "../language/translate";
+import { codedTexts } from "../live/codedText";
 import { importsChanged } from "../plan/imports";
 import { attempt, mayAct } from "../sessions";
 import { openDialog, withImports } from "../uiState";
@@ -110,7 +111,7 @@ function FileName({ file, incidentId }: { file: ImportedFile; incidentId: string
         {bytes(file.size_bytes)}
         {file.is_here ? "" : ` ${t("imports.not_here")}`}
       </span>
-      {file.warnings.map((warning) => (
+      {codedTexts(file.warnings, file.warning_codes).map((warning) => (
         <p key={warning} class="quiet">
           {warning}
         </p>

@@ -215,6 +215,8 @@ def test_wrong_part_is_left_out_and_named(change: dict[str, Any], lost: str, wor
     assert not getattr(report, lost)
     assert report.address == PLAIN["address"]
     assert any(word in warning for warning in report.warnings)
+    assert all(code.code for code in report.warning_codes)
+    assert len(report.warning_codes) == len(report.warnings)
 
 
 def test_future_time_of_change_does_not_keep_later_reports_out() -> None:

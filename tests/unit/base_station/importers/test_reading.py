@@ -13,6 +13,7 @@ from base_station.importers.process import content_of
 from base_station.importers.reading import read_import
 from base_station.storage.imports import ImportedContent
 from shared.clock import NS_PER_S
+from shared.coded_text import TextCode
 from shared.errors import UserError
 from shared.mcap_log import SegmentWriter
 from shared.messages.station import OpenIncident, SetAnchor
@@ -81,6 +82,9 @@ def test_routes_and_waypoints_in_utf_16_are_read_and_a_time_without_a_zone_is_no
     assert [track.name for track in content.tracks] == ["Ladder", "rte 2"]
     assert [track.points[0].t_ns for track in content.tracks] == [1_767_261_600 * NS_PER_S] * 2
     assert content.warnings == ("2 points without a place or a time are left out",)
+    assert content.summary.warning_codes == (
+        TextCode("import-points-left-out", numbers={"count": 2.0}),
+    )
 
 
 def test_tracks_and_timed_places_of_kml_are_read_and_lines_are_left_out(tmp_path: Path) -> None:

@@ -1,7 +1,9 @@
 /** Texts that nobody sees at the start, in German: fetched when the page is shown. */
 export * from "./assessment_reasons";
+export * from "./dispatch_warnings";
 export * from "./drawing_notes";
 export * from "./field_labels";
+export * from "./import_warnings";
 export * from "./pin_reasons";
 export * from "./refusals_access";
 export * from "./refusals_form";

@@ -164,4 +164,13 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "Die Zeit des Pins liegt {early_s} vor dem Beginn des Wegs von {unit}; da gibt es nichts festzulegen",
   "fuser-unknown":
     "Diese Version von Muster hat kein Ortungsverfahren „{fuser}“",
+  "report-no-number":
+    "Die Meldung hat keine Nummer: Geben Sie {part} an, 1 bis {longest, number} Zeichen; nichts wurde übernommen.",
+  "report-json-unreadable": "Der Inhalt ist kein lesbares JSON: {error}.",
+  "report-no-object": "Der Inhalt ist kein JSON-Objekt: Senden Sie ein EIDO oder ein Objekt mit einer Nummer.",
+  "alert-no-xml": "Der Inhalt ist kein zulässiges XML: {error}.",
+  "alert-no-cap": "Der Inhalt ist keine CAP-Warnung: Das oberste Element ist „{root}“.",
+  "alert-no-id": "Die Warnung hat kein {part}; nichts wurde übernommen.",
+  "alerts-not-taken": "Diese Station nimmt keine Warnungen an: Sie gibt nur wieder.",
+  "media-type-other": "Senden Sie es als eines von {types} (Kopfzeile Content-Type).",
 };

@@ -170,4 +170,8 @@ export const refusal_past: Part<"refusal_past"> = {
     "Die Datei lässt sich nicht speichern: {error}",
   "import-damaged":
     "Was aus einer eingebrachten Datei gelesen wurde, ist beschädigt ({error}); bringen Sie die Datei noch einmal ein",
+  "import-no-point": "kein Punkt darin hat Ort und Zeit: Speichern Sie es neu als aufgezeichnete Spur mit Zeiten",
+  "import-no-timed-place": "kein Ort darin hat eine Zeit: Speichern Sie es neu als Spur mit Zeiten",
+  "import-track-unplaced": "keine Spur darin hat eine Lage auf der Erde: Ihr Ort ist nicht verortet",
+  "import-nothing-usable": "{damage}; {reason}",
 };

@@ -162,4 +162,12 @@ export const refusal_incident = {
     "the pin’s time is {early_s} before the path of {unit} begins; there is nothing to pin there",
   "fuser-unknown":
     "this version of Muster has no fuser “{fuser}”",
+  "report-no-number": "The report has no number: give {part}, 1 to {longest, number} characters; nothing was taken.",
+  "report-json-unreadable": "The body is not JSON that can be read: {error}.",
+  "report-no-object": "The body is not a JSON object: send an EIDO, or an object with a number.",
+  "alert-no-xml": "The body is not XML that is accepted: {error}.",
+  "alert-no-cap": "The body is not a CAP alert: its root is “{root}”.",
+  "alert-no-id": "The alert has no {part}; nothing was taken.",
+  "alerts-not-taken": "This station takes no alerts: it only replays.",
+  "media-type-other": "Send it as one of {types} (header Content-Type).",
 };

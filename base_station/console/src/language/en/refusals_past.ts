@@ -168,4 +168,8 @@ export const refusal_past = {
     "the file cannot be kept: {error}",
   "import-damaged":
     "what was read of an imported file is damaged ({error}); bring the file in again",
+  "import-no-point": "no point of it has a place and a time: save it again as a recorded track, with times",
+  "import-no-timed-place": "no place of it has a time: save it again as a track with times",
+  "import-track-unplaced": "no track in it has a place on the Earth: its site has no location",
+  "import-nothing-usable": "{damage}; {reason}",
 };

@@ -164,4 +164,13 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "L’heure du repère précède de {early_s} le début du parcours de {unit}\u00a0; il n’y a rien à repérer là",
   "fuser-unknown":
     "Cette version de Muster n’a pas de méthode de localisation «\u00a0{fuser}\u00a0»",
+  "report-no-number":
+    "Le rapport n’a pas de numéro\u00a0: donnez {part}, de 1 à {longest, number} caractères\u00a0; rien n’a été pris.",
+  "report-json-unreadable": "Le contenu n’est pas un JSON lisible\u00a0: {error}.",
+  "report-no-object": "Le contenu n’est pas un objet JSON\u00a0: envoyez un EIDO, ou un objet avec un numéro.",
+  "alert-no-xml": "Le contenu n’est pas un XML accepté\u00a0: {error}.",
+  "alert-no-cap": "Le contenu n’est pas une alerte CAP\u00a0: sa racine est «\u00a0{root}\u00a0».",
+  "alert-no-id": "L’alerte n’a pas de {part}\u00a0; rien n’a été pris.",
+  "alerts-not-taken": "Cette station ne prend pas d’alertes\u00a0: elle ne fait que relire.",
+  "media-type-other": "Envoyez-le sous l’un de ces types\u00a0: {types} (en-tête Content-Type).",
 };

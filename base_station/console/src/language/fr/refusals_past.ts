@@ -170,4 +170,9 @@ export const refusal_past: Part<"refusal_past"> = {
     "Le fichier ne peut pas être conservé\u00a0: {error}",
   "import-damaged":
     "Ce qui a été lu d’un fichier versé est endommagé ({error})\u00a0; versez le fichier de nouveau",
+  "import-no-point":
+    "aucun point n’a de lieu ni d’heure\u00a0: enregistrez-le à nouveau comme trace, avec les heures",
+  "import-no-timed-place": "aucun lieu n’a d’heure\u00a0: enregistrez-le à nouveau comme trace avec les heures",
+  "import-track-unplaced": "aucune trace n’a de lieu sur la Terre\u00a0: son site n’est pas localisé",
+  "import-nothing-usable": "{damage}\u00a0; {reason}",
 };

@@ -1,0 +1,32 @@
+/** Warnings about parts of a dispatch or an alert, by their codes, in German. */
+import type { Part } from "../catalogue";
+
+export const dispatch_warning: Part<"dispatch_warning"> = {
+  "alert-circle-unreadable": "ein Kreis lässt sich nicht lesen und wird weggelassen",
+  "alert-expiry-far": "sie endet in mehr als einer Woche; sie wird eine Woche gezeigt",
+  "alert-expiry-unreadable": "„expires“ ist keine Zeit mit Zeitzone; die Warnung wird einen Tag gezeigt",
+  "alert-no-references": "sie nennt keine Warnung, die sie ändert oder aufhebt",
+  "alert-polygon-unreadable": "ein Vieleck lässt sich nicht lesen oder ist nicht geschlossen und wird weggelassen",
+  "alert-too-many-areas": "{count, number} Gebiete nach den ersten {most, number} werden weggelassen",
+  "alert-too-many-references": "nur die letzten {most, number} Verweise werden beachtet",
+  "location-no-number": "{part} hat eine Position, die keine Zahl ist, und wird weggelassen",
+  "location-other-system": "{part} ist in {system} statt in WGS-84 und wird weggelassen",
+  "location-unreadable": "{part} lässt sich nicht lesen ({error}) und wird weggelassen",
+  "more-warnings": "{count, plural, one {ein weiterer Hinweis} other {# weitere Hinweise}}",
+  "report-ended-no-flag": "„ended“ ist weder true noch false und wird weggelassen",
+  "report-no-position": "{part} ist keine geografische Breite und Länge und wird weggelassen",
+  "report-no-text": "{part} ist kein Text und wird weggelassen",
+  "report-no-time": "{part} ist keine Zeit wie 2026-03-01T14:02:11+01:00 und wird weggelassen",
+  "report-no-zone": "{part} hat keine Zeitzone und wird weggelassen",
+  "report-not-on-earth": "{part} ({lat_deg}, {lon_deg}) ist kein Ort auf der Erde und wird weggelassen",
+  "report-place-elsewhere": "ein Ort ist durch die Adresse eines anderen Servers angegeben und wird nicht abgerufen",
+  "report-place-of-call": "der Ort ist der des Anrufs ({kind}), nicht sicher der des Einsatzes",
+  "report-position-no-object": "„position“ ist kein Objekt mit lat_deg und lon_deg und wird weggelassen",
+  "report-position-zero": "{part} ist 0, 0, was für keinen Ort steht, und wird weggelassen",
+  "report-text-too-long": "{part} ist länger als {longest, number} Zeichen und wird gekürzt",
+  "report-time-ahead": "{part} ({value}) liegt mehr als einen Tag in der Zukunft und wird weggelassen",
+  "report-time-odd": "{part} ({value}) ist nicht plausibel und wird weggelassen",
+  "report-too-many-units": "{count, number} Einheiten nach den ersten {most, number} werden weggelassen",
+  "report-units-no-list": "„units“ ist keine Liste und wird weggelassen",
+  "report-unknown-fields": "unbekannte Felder werden weggelassen: {fields}",
+};
