@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import pytest
 
+from tests.rig.answer_types import answer_files
 from tests.rig.console_types import (
-    ANSWERS_TS,
+    ANSWERS,
     DEPARTMENT_TS,
-    WIRE_TS,
-    answer_types,
+    WIRE,
     department_types,
-    wire_types,
+    read_types,
 )
 from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
+from tests.rig.wire_types import wire_files
 
 
 def test_types_of_the_console_are_those_of_the_station() -> None:
-    written = WIRE_TS.read_text(encoding="utf-8")
-    assert written == wire_types(), "run: python -m tests.rig.console_types"
+    assert read_types(WIRE) == wire_files(), "run: python -m tests.rig.console_types"
 
 
 def test_types_of_requests_and_answers_are_those_of_the_api() -> None:
-    written = ANSWERS_TS.read_text(encoding="utf-8")
-    assert written == answer_types(), "run: python -m tests.rig.console_types"
+    assert read_types(ANSWERS) == answer_files(), "run: python -m tests.rig.console_types"
     written = DEPARTMENT_TS.read_text(encoding="utf-8")
     assert written == department_types(), "run: python -m tests.rig.console_types"
 
@@ -48,7 +47,7 @@ def test_page_about_the_websocket_is_generated_from_the_messages() -> None:
     ],
 )
 def test_generated_types_declare_what_a_message_may_hold(declared: str) -> None:
-    assert declared in wire_types().split("\n")
+    assert declared in _lines(read_types(WIRE))
 
 
 @pytest.mark.parametrize(
@@ -64,4 +63,8 @@ def test_generated_types_declare_what_a_message_may_hold(declared: str) -> None:
     ],
 )
 def test_generated_types_declare_requests_and_answers(declared: str) -> None:
-    assert declared in ANSWERS_TS.read_text(encoding="utf-8").split("\n")
+    assert declared in _lines(read_types(ANSWERS))
+
+
+def _lines(files: dict[str, str]) -> list[str]:
+    return [line for content in files.values() for line in content.split("\n")]

@@ -14,7 +14,7 @@ the message that it follows.  Messages are compressed where the console offers i
 
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
 Positions are metres north, east and down in the incident frame.  The console's
-``src/wire.ts`` and the page ``docs/live.md`` are generated from these types (``python -m
+``src/wire/`` and the page ``docs/live.md`` are generated from these types (``python -m
 tests.rig.console_types``).
 """
 

@@ -1,0 +1,10 @@
+export type * from "./accounts";
+export type * from "./alarms";
+export type * from "./commands";
+export type * from "./common";
+export type * from "./incidents";
+export type * from "./people";
+export type * from "./site";
+export type * from "./station";
+export type * from "./tracks";
+export type * from "./units";
