@@ -14,11 +14,16 @@ from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.x509.oid import NameOID
 
+from shared.coded_text import Measure, coded
 from shared.errors import ConfigError
 
 # What cryptography raises for certificates and keys that are not whole.
 DAMAGED = (ValueError, TypeError, UnsupportedAlgorithm, x509.InvalidVersion)
-_RENEWAL = "renew it at the station with `muster pki renew`"
+_RENEWAL = coded(
+    "certificate-renew-at-station",
+    "renew it at the station with {command}",
+    command="`muster pki renew`",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,18 +61,30 @@ def check_identity(identity: TlsIdentity) -> None:
 def validity_problem(identity: TlsIdentity, now: datetime, renewal: str = _RENEWAL) -> str | None:
     """A sentence when the certificate is not valid at ``now`` (aware); None when it is."""
     certificate = parse_certificate(identity.certificate, "certificate")
-    clock = f"the clock here says {now:%Y-%m-%d %H:%M} UTC"
     if now < certificate.not_valid_before_utc:
-        return (
-            f"the certificate of {common_name(certificate)} is not valid before "
-            f"{certificate.not_valid_before_utc:%Y-%m-%d %H:%M} UTC and {clock}: set the clock"
+        return coded(
+            "certificate-not-yet-valid",
+            "the certificate of {name} is not valid before {from_utc_s} and the clock here says "
+            "{now_utc_s}: set the clock",
+            name=common_name(certificate),
+            from_utc_s=_minute(certificate.not_valid_before_utc),
+            now_utc_s=_minute(now),
         )
     if now > certificate.not_valid_after_utc:
-        return (
-            f"the certificate of {common_name(certificate)} expired on "
-            f"{certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC and {clock}: {renewal}"
+        return coded(
+            "certificate-expired-on",
+            "the certificate of {name} expired on {until_utc_s} and the clock here says "
+            "{now_utc_s}: {renewal}",
+            name=common_name(certificate),
+            until_utc_s=_minute(certificate.not_valid_after_utc),
+            now_utc_s=_minute(now),
+            renewal=renewal,
         )
     return None
+
+
+def _minute(at: datetime) -> Measure:
+    return Measure(at.timestamp(), f"{at:%Y-%m-%d %H:%M} UTC")
 
 
 def fingerprint(pem: bytes) -> str:

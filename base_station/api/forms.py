@@ -48,8 +48,9 @@ PATTERN_DESCRIPTIONS = {  # what each pattern asks for, in words
     ),
 }
 
-Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NAME)]
-ShortText = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
+MAX_TEXT_LETTERS = 80  # of a name or a short text
+Name = Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT_LETTERS, pattern=_NAME)]
+ShortText = Annotated[str, StringConstraints(max_length=MAX_TEXT_LETTERS, pattern=_PRINTABLE)]
 DispatchNumber = Annotated[str, StringConstraints(max_length=128, pattern=_NAME)]
 DispatchNumberOrNone = Annotated[str, StringConstraints(max_length=128, pattern=_PRINTABLE)]
 Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]

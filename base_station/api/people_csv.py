@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import pydantic
 
-from base_station.api.forms import Name, ShortText
+from base_station.api.forms import MAX_TEXT_LETTERS, Name, ShortText
 from base_station.storage.db.people_import import same_name
 from shared.coded_text import coded
 from shared.errors import UserError
@@ -138,8 +138,13 @@ def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
             continue
         before = first_line.setdefault(same_name(person.name), line)
         if before != line:
-            text = f"{person.name} is in line {before} already; tell the two apart by their names"
-            faults.append(CsvFault(line, text))
+            twice = coded(
+                "csv-person-twice",
+                "{name} is in line {line} already; tell the two apart by their names",
+                name=person.name,
+                line=before,
+            )
+            faults.append(CsvFault(line, twice))
         else:
             people.append(person)
     if not people and not faults:
@@ -191,13 +196,19 @@ def _person(line: int, cells: list[str], columns: dict[str, int]) -> CsvPerson |
     parts = (cell("name"),) if "name" in columns else (cell("first"), cell("last"))
     name = " ".join(" ".join(filter(None, parts)).split())
     if not name:
-        return CsvFault(line, "the name is missing")
+        return CsvFault(line, coded("csv-name-missing", "the name is missing"))
     crew, role = cell("crew"), cell("role")
-    for what, text, form in (("name", name, _NAME), ("crew", crew, _TEXT), ("role", role, _TEXT)):
+    for field, text, form in (("name", name, _NAME), ("crew", crew, _TEXT), ("role", role, _TEXT)):
         try:
             form.validate_python(text or "x")
         except pydantic.ValidationError:
-            return CsvFault(line, f"the {what} is longer than 80 letters, or not of plain letters")
+            fault = coded(
+                "csv-text-faulty",
+                "the {field} is longer than {most} letters, or not of plain letters",
+                field=field,
+                most=MAX_TEXT_LETTERS,
+            )
+            return CsvFault(line, fault)
     return CsvPerson(line, name, crew or None, role or None)
 
 

@@ -17,9 +17,10 @@ from base_station.archive.store import open_store
 from base_station.config import ArchiveConfig
 from base_station.replay.processes import wire
 from base_station.storage.db.archived import ArchivedCopies
+from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import ArchiveView
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
-from shared.coded_text import coded
+from shared.coded_text import code_of_text, coded, text_of_error, text_with_code
 from shared.errors import ArchiveError, StoreError
 from shared.worker import Worker
 
@@ -88,7 +89,8 @@ class AutomaticArchive:
                 waiting=self._waiting,
                 copied=self._copied,
                 archived_ms=None if self._archived_ns is None else self._archived_ns // NS_PER_MS,
-                text=self._reason,
+                text=str(self._reason),
+                text_code=text_code_view_or_none(code_of_text(self._reason)),
             )
 
     def problems(self) -> Iterable[str]:
@@ -127,7 +129,7 @@ class AutomaticArchive:
             if waiting:
                 self._copy()
         except (ArchiveError, StoreError) as error:
-            return self._note_failure(str(error))
+            return self._note_failure(text_of_error(error))
         self._note_success()
         return self._poll_interval_s
 
@@ -163,11 +165,13 @@ class AutomaticArchive:
                     self._note_copied(incident_id, damage)
                 case wire.CopiesDone():
                     return
-                case wire.Failure(reason):
-                    raise ArchiveError(reason)
+                case wire.Failure() as failure:
+                    raise ArchiveError(text_with_code(failure.reason, failure.code))
                 case wire.Damage(what):
                     self._place.note_damage(what)
-        raise StoreError("the process that copies incidents has ended")
+        raise StoreError(
+            coded("archive-process-ended", "the process that copies incidents has ended")
+        )
 
     # ---- status
 

@@ -6,6 +6,8 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from shared.coded_text import coded
+
 _log = logging.getLogger(__name__)
 Progress = Callable[[float], None]  # receives the fraction done
 
@@ -21,8 +23,15 @@ class ErasureProgress:
     kept: tuple[str, ...] = ()  # records that stay, as sentences
 
     def note_damage(self, part: str, written_anew: bool) -> None:
-        gone, stays = "its unreadable part is gone", "it stays, with all people in it"
-        damage = f"Damaged: {part}; {gone if written_anew else stays}"
+        damage = (
+            coded("erasure-damage-gone", "Damaged: {part}; its unreadable part is gone", part=part)
+            if written_anew
+            else coded(
+                "erasure-damage-stays",
+                "Damaged: {part}; it stays, with all people in it",
+                part=part,
+            )
+        )
         if damage not in self.damaged:
             _log.warning("%s", damage)
             self.damaged = (*self.damaged, damage)

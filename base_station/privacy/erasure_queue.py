@@ -13,18 +13,14 @@ import secrets
 from collections.abc import Callable
 from dataclasses import replace
 from enum import StrEnum
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from base_station.privacy.erasure_progress import ErasureProgress, ErasureResult, Progress
-from base_station.privacy.erasure_service import (
-    BY_OTHER_STATION,
-    PERSON,
-    RADIO_KEPT,
-    ErasureService,
-)
+from base_station.privacy.erasure_service import BY_OTHER_STATION, PERSON, ErasureService
 from base_station.storage.job_queue import JobList, JobQueue
 from shared.coded_text import (
     NO_CODE,
@@ -39,8 +35,9 @@ from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
 
 _log = logging.getLogger(__name__)
-_OTHER_HAS_IT = (
-    "The other station of the pair has all of it until this one is started and the two are linked"
+_OTHER_HAS_IT = coded(
+    "erasure-other-has-it",
+    "The other station of the pair has all of it until this one is started and the two are linked",
 )
 _AGAIN_S = 10.0  # after a failure of disk or store, or while there is an obstacle
 
@@ -70,6 +67,8 @@ class ErasureJob(msgspec.Struct):
     files: int = 0  # that were written anew or removed
     damaged: tuple[str, ...] = ()  # parts of the log, and their results
     kept: tuple[str, ...] = ()  # records that stay, as sentences
+    damaged_codes: tuple[TextCode, ...] = ()  # of ``damaged``, in their order
+    kept_codes: tuple[TextCode, ...] = ()  # of ``kept``, in their order
     began: bool = False  # once before, perhaps by an earlier run of the program
     problem_code: TextCode = NO_CODE
     from_peer: bool = msgspec.field(default=False, name="told")  # the other station has erased it
@@ -245,10 +244,13 @@ def _problem(text: str) -> dict[str, Any]:
 
 
 def _left(progress: ErasureProgress) -> str:
-    """Sentence about what stays; the radio's has a code."""
-    if (progress.damaged, progress.kept) == ((), (RADIO_KEPT,)):
-        return RADIO_KEPT
-    return ". ".join((*progress.damaged, *progress.kept))
+    """Sentences about what is damaged and what stays, as one text; empty: there are none."""
+    sentences = (*progress.damaged, *progress.kept)
+    return reduce(_followed, sentences) if sentences else ""
+
+
+def _followed(before: str, last: str) -> str:
+    return coded("erasure-left", "{before}. {last}", before=before, last=last)
 
 
 def _problem_of(job: ErasureJob) -> str:
@@ -294,13 +296,25 @@ def _erase(
 
 def _progress_before(job: ErasureJob) -> ErasureProgress:
     """Counts of the attempts before."""
-    return ErasureProgress(job.records, job.files, job.began, job.damaged, job.kept)
+    damaged = _with_codes(job.damaged, job.damaged_codes)
+    kept = _with_codes(job.kept, job.kept_codes)
+    return ErasureProgress(job.records, job.files, job.began, damaged, kept)
+
+
+def _with_codes(texts: tuple[str, ...], codes: tuple[TextCode, ...]) -> tuple[str, ...]:
+    """The texts of a file; those that an earlier version wrote have no codes."""
+    return tuple(
+        text_with_code(text, codes[at] if at < len(codes) else NO_CODE)
+        for at, text in enumerate(texts)
+    )
 
 
 def _counts(progress: ErasureProgress) -> dict[str, object]:
     return {
         "records": progress.records,
         "files": progress.files,
-        "damaged": progress.damaged,
-        "kept": progress.kept,
+        "damaged": tuple(map(str, progress.damaged)),
+        "damaged_codes": tuple(map(code_of_text, progress.damaged)),
+        "kept": tuple(map(str, progress.kept)),
+        "kept_codes": tuple(map(code_of_text, progress.kept)),
     }

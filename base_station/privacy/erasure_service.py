@@ -66,14 +66,15 @@ from shared.messages.station import (
 
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # requests here the erasures done there
-RADIO_KEPT = coded(
+_RADIO_KEPT = coded(
     "erasure-radio-kept",
     "What was recorded of the radio while another incident was open stays until that is forgotten, "
     "too: nobody can tell who of them speaks",
 )
-IMPORTS_KEPT = (
+_IMPORTS_KEPT = coded(
+    "erasure-imports-kept",
     "Files that were brought in stay as they came, with people and voices in them: take out those "
-    "that have the person"
+    "that have the person",
 )
 PERSON = "person"
 _ACTED_WITHIN_S = 20.0
@@ -269,7 +270,7 @@ class ErasureService:
         if erasure.incident_id:
             progress.files += self._imports.remove_all(erasure.incident_id)
         elif any(self._imports.files()):
-            progress.kept = (IMPORTS_KEPT,)
+            progress.kept = (_IMPORTS_KEPT,)
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.remove(erasure.incident_id)
         done = ErasureResult(
@@ -289,7 +290,7 @@ class ErasureService:
         for from_ns, until_ns in erasure.times_alone(erased):
             progress.records += self._erase_audio(from_ns, until_ns)
         if any(one.incident_id not in erased for one in erasure.others):
-            progress.kept = (str(RADIO_KEPT),)
+            progress.kept = (_RADIO_KEPT,)
 
     def _erase_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""

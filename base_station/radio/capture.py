@@ -15,15 +15,18 @@ from typing import BinaryIO
 
 import msgspec
 
-from base_station.radio.capture_wire import PACKET, PROBLEM, Captured, encoded
+from base_station.radio.capture_wire import PACKET, PROBLEM, Captured, encode_problem, encoded
 from base_station.radio.config import RadioConfig
+from shared.coded_text import coded, text_of_error
 from shared.errors import MusterError
 
 _NICE = 5  # live work goes before
-NOT_INSTALLED = (
-    "the library av, which encodes audio, is not installed: "
-    "pip install --require-hashes -r deploy/requirements-radio.lock"
+NOT_INSTALLED = coded(
+    "radio-library-missing",
+    "the library av, which encodes audio, is not installed: {command}",
+    command="pip install --require-hashes -r deploy/requirements-radio.lock",
 )
+_ENDED = coded("radio-source-ended", "the source ended")
 
 
 def capture(config: RadioConfig, out: BinaryIO) -> None:
@@ -53,12 +56,12 @@ def main() -> None:
     try:
         capture(config, out)
     except ModuleNotFoundError:
-        problem = NOT_INSTALLED
+        problem: str = NOT_INSTALLED
     except MusterError as error:
-        problem = str(error)
+        problem = text_of_error(error)
     else:
-        problem = "the source ended"
-    out.write(encoded(Captured(PROBLEM, time.monotonic_ns(), problem.encode())))
+        problem = _ENDED
+    out.write(encoded(Captured(PROBLEM, time.monotonic_ns(), encode_problem(problem))))
     out.flush()
 
 

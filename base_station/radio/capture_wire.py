@@ -6,17 +6,38 @@ import struct
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import msgspec
+
+from shared.coded_text import NO_CODE, TextCode, code_of_text, text_with_code
+
 _HEAD = struct.Struct("<BqI")  # kind, monotonic time (ns), bytes that follow
 PACKET, PROBLEM = 0, 1
 _LENGTH_MAX = 65_536
 
 
 class Captured(NamedTuple):
-    """An Opus packet, or a sentence about a problem."""
+    """An Opus packet, or a problem (``encode_problem``)."""
 
     kind: int
     t_mono_ns: int
     content: bytes
+
+
+class _ProblemText(msgspec.Struct, frozen=True):
+    """Sentence for a person, and its code."""
+
+    text: str
+    code: TextCode = NO_CODE
+
+
+def encode_problem(text: str) -> bytes:
+    return msgspec.json.encode(_ProblemText(str(text), code_of_text(text)))
+
+
+def decode_problem(content: bytes) -> str:
+    """The sentence with its code; msgspec.DecodeError where the content makes no sense."""
+    problem = msgspec.json.decode(content, type=_ProblemText)
+    return text_with_code(problem.text, problem.code)
 
 
 def encoded(captured: Captured) -> bytes:

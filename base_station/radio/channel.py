@@ -19,12 +19,13 @@ from threading import Lock
 
 import msgspec
 
-from base_station.radio.capture_wire import PACKET, Captured, CaptureDecoder
+from base_station.radio.capture_wire import PACKET, Captured, CaptureDecoder, decode_problem
 from base_station.radio.config import RadioConfig
 from base_station.radio.packets import Packet, payload_of
+from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import RadioView
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
-from shared.coded_text import coded
+from shared.coded_text import code_of_text, coded, text_of_error
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, audio_topic, recover_log
 from shared.worker import Worker
@@ -39,6 +40,9 @@ _OVERLAP_NS = 60 * NS_PER_MS  # packets that overlap more with recorded ones are
 _POLICY = SegmentPolicy(flush_every_s=2.0)
 _PIPE_BYTES = 65_536
 _ENDS_WITHIN_S = 2.0
+
+
+_BROKE_OFF = coded("radio-capture-broke-off", "the process that captures it broke off")
 
 
 @dataclass(slots=True)
@@ -89,6 +93,7 @@ class RadioChannel:
             source=self._config.shown_source,
             state="recording" if self._is_recording else "away",
             problem=str(self.problem),
+            problem_code=text_code_view_or_none(code_of_text(self.problem)),
         )
 
     @property
@@ -103,7 +108,7 @@ class RadioChannel:
         try:
             self._open_log()
         except LogError as error:
-            self._problem = str(error)
+            self._problem = text_of_error(error)
             return self._longer_pause()
         run = self._begin()
         try:
@@ -159,10 +164,14 @@ class RadioChannel:
             if poll.poll(_TURN_MS):
                 data = os.read(pipe, _PIPE_BYTES)
                 if not data:
-                    return problem or "the process that captures it broke off"
+                    return problem or _BROKE_OFF
                 problem = self._take(run, list(decoder.push(data))) or problem
             elif self._clock.monotonic_ns() - run.last_ns > _patience_ns(run):
-                return f"{self._config.shown_source} gives nothing"
+                return coded(
+                    "radio-source-silent",
+                    "{source} gives nothing",
+                    source=self._config.shown_source,
+                )
         return ""
 
     def _take(self, run: _CaptureRun, captured: list[Captured]) -> str:
@@ -173,7 +182,7 @@ class RadioChannel:
         with self._writing:
             for one in captured:
                 if one.kind != PACKET:
-                    problem = one.content.decode(errors="replace")
+                    problem = decode_problem(one.content)
                     continue
                 self._log(Packet(one.t_mono_ns + to_utc_ns, one.content))
                 run.last_ns = now_ns

@@ -22,6 +22,7 @@ from base_station.radio.config import DEVICE, FILE, RadioConfig
 from base_station.radio.encoder import BYTES_PER_SAMPLE
 from base_station.radio.opus import SAMPLE_HZ
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import MusterError
 
 BYTES_PER_S = SAMPLE_HZ * BYTES_PER_SAMPLE
@@ -61,7 +62,13 @@ def _device_sounds(name: str) -> Iterator[Sound]:
     """Through ``arecord``: the system's ALSA knows the system's devices and plugins."""
     arecord = shutil.which("arecord")
     if arecord is None:
-        raise SourceError("arecord is not installed: install the package alsa-utils")
+        raise SourceError(
+            coded(
+                "radio-arecord-missing",
+                "arecord is not installed: install the package {package}",
+                package="alsa-utils",
+            )
+        )
     command = (
         *(arecord, "-q", "-D", name, "-t", "raw", "-f", "S16_LE", "-r", str(SAMPLE_HZ), "-c", "1"),
         f"--period-time={_PERIOD_US}",
@@ -80,7 +87,14 @@ def _device_sounds(name: str) -> Iterator[Sound]:
                 yield Sound(block[:whole], bytes_read / BYTES_PER_S, received_ns)
             bytes_read += whole
         process.wait()
-    raise SourceError(f"the sound device {name} ended: {' '.join(words) or 'it gives no reason'}")
+    raise SourceError(
+        coded(
+            "radio-device-ended",
+            "the sound device {device} ended: {reason}",
+            device=name,
+            reason=" ".join(words) or coded("radio-no-reason", "it gives no reason"),
+        )
+    )
 
 
 def _last_words(stderr: IO[bytes]) -> deque[str]:
@@ -100,10 +114,18 @@ def _stream_sounds(url: str, protocols: str) -> Iterator[Sound]:
     try:
         with av.open(url, timeout=(_OPEN_S, _READ_S), container_options=options) as container:
             if not container.streams.audio:
-                raise SourceError("it is opened, and there is no audio in it")
+                raise SourceError(
+                    coded("radio-no-audio", "it is opened, and there is no audio in it")
+                )
             yield from _decoded(container)
     except av.FFmpegError as error:
-        raise SourceError(f"the stream cannot be read: {error.strerror or error}") from error
+        raise SourceError(
+            coded(
+                "radio-stream-unreadable",
+                "the stream cannot be read: {error}",
+                error=error.strerror or str(error),
+            )
+        ) from error
 
 
 def _decoded(container: av.container.InputContainer) -> Iterator[Sound]:
@@ -135,7 +157,7 @@ def _repeated(path: str) -> Iterator[Sound]:
             yield replace(sound, start_s=begin_s + sound.start_s)
             end_s = begin_s + sound.start_s + len(sound.pcm) / BYTES_PER_S
         if end_s == begin_s:
-            raise SourceError("there is no audio in the file")
+            raise SourceError(coded("radio-file-silent", "there is no audio in the file"))
         begin_s = end_s
 
 

@@ -27,6 +27,7 @@ PARTS = (
     "drawing_notes",
     "pin_reasons",
     "transfer_problems",
+    "connection_reasons",
     "dispatch_warnings",
     "import_warnings",
     *(

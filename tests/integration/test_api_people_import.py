@@ -41,6 +41,11 @@ async def test_a_file_with_a_fault_adds_no_person(station: InProcessStation) -> 
     async with station.client(Role.COMMANDER) as client:
         for _ in range(2):
             await client.post("/people", json={"name": "Ada"})
+        shown = await import_crews(client, f"{_CREWS};Engine 2\n", preview=True)
+        assert [one["fault_code"]["code"] for one in shown.json()["faulty_lines"]] == [
+            "csv-person-ambiguous",
+            "csv-name-missing",
+        ]
         refused = await import_crews(client, f"{_CREWS};Engine 2\n")
         assert refused.status_code == 422
         assert refused.json()["detail"] == (

@@ -17,6 +17,7 @@ FIELDS: Mapping[str, str] = {
     "change": "What becomes of the person: add, change, or same where nothing changes.",
     "fault": "What is wrong with the line, and what to do.",
     "faulty_lines": "Lines that cannot be used: nobody is added or changed while there is one.",
+    "FaultyLine.fault_code": "Code of the fault; null: it has none.",
     "PeopleImport.people": "Everybody whose line can be used.",
     "preview": "True: say what would be done, and do nothing.",
     "photo_url": "Where the photo is fetched; null: there is none.",

@@ -71,6 +71,7 @@ FIELDS: Mapping[str, str] = {
     "ArchiveView.archived_ms": "When the last one was copied; null: none since the station "
     "started.",
     "ArchiveView.text": "Why nothing can be copied, as a sentence; empty: all is well.",
+    "ArchiveView.text_code": "Code of that text; null: it has none.",
     "IncidentAnswer.erased_at_ms": "When the station erases the data of its people by itself; "
     "null: never, or it is open",
     "IncidentAnswer.archived_ms": "When it was copied to an archive and read there; null: it is in "

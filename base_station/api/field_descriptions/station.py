@@ -54,4 +54,5 @@ FIELDS: Mapping[str, str] = {
     "ForwarderView.received": "Events of other teams taken since the station started.",
     "ForwarderView.refused": "Events of other teams that could not be read or were too many.",
     "ForwarderView.text": "Why it is not connected, or why less is sent; empty: all is well.",
+    "ForwarderView.text_code": "Code of that text; null: it has none.",
 }

@@ -21,8 +21,9 @@ from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.storage.db import models
 from base_station.storage.db.people_import import ImportStep, ListedPerson
-from base_station.views.wire import PersonView
-from shared.coded_text import Measure, coded, text_of_error
+from base_station.views.text_code import text_code_view_or_none
+from base_station.views.wire import PersonView, TextCodeView
+from shared.coded_text import Measure, code_of_text, coded, text_of_error
 from shared.errors import UserError
 from shared.messages.station import Assign
 
@@ -46,6 +47,7 @@ class ListedPersonAnswer(BaseModel):
 class FaultyLine(BaseModel):
     line: int
     fault: str
+    fault_code: TextCodeView | None  # of ``fault``, where it has one
 
 
 class PeopleImport(BaseModel):
@@ -107,16 +109,28 @@ def import_people(
             for one, step in zip(listed, steps, strict=True)
             if step.kind != "ambiguous"
         ],
-        faulty_lines=[FaultyLine(line=fault.line, fault=fault.text) for fault in faults],
+        faulty_lines=[_faulty_line(fault) for fault in faults],
     )
 
 
 def _ambiguous(listed: list[CsvPerson], steps: list[ImportStep]) -> list[CsvFault]:
     return [
-        CsvFault(one.line, f"{step.name} is the name of two people here; rename one of them first")
+        CsvFault(
+            one.line,
+            coded(
+                "csv-person-ambiguous",
+                "{name} is the name of two people here; rename one of them first",
+                name=step.name,
+            ),
+        )
         for one, step in zip(listed, steps, strict=True)
         if step.kind == "ambiguous"
     ]
+
+
+def _faulty_line(fault: CsvFault) -> FaultyLine:
+    code = text_code_view_or_none(code_of_text(fault.text))
+    return FaultyLine(line=fault.line, fault=str(fault.text), fault_code=code)
 
 
 def _refusal(faults: list[CsvFault]) -> str:

@@ -3,9 +3,7 @@ import { floorNames, clock, date, degrees, length, listed, number, quantity, sha
 import { knownLabel, label, t } from "./language/translate";
 import type {
   AlarmView,
-  ArchiveView,
   ClockView,
-  ForwarderView,
   PositionView,
   SensorTemperatureView,
   StatusView,
@@ -320,24 +318,4 @@ export function bytes(count: number): string {
 
 function pad(whole: number): string {
   return String(whole).padStart(2, "0");
-}
-
-/** The archive of closed incidents in one line. */
-export function archiveLine(archive: ArchiveView): string {
-  const { location, archived_ms } = archive;
-  const line = t("archive.line", { location, state: t(`archive.${archive.state}`) });
-  const waiting = archive.waiting > 0 ? t("archive.incidents", { count: archive.waiting }) : "";
-  const last = archived_ms === null ? "" : t("archive.last", { time: dateAndTime(archived_ms) });
-  return [line, waiting, last, archive.text].filter(Boolean).join("; ");
-}
-
-/** A connection with another system in one line. */
-export function forwarderLine(one: ForwarderView): string {
-  const { name, address } = one;
-  const state = t(`forwarder.${one.state}`);
-  const line = t("forwarder.line", { kind: one.kind.toUpperCase(), name, address, state });
-  const sent = t("forwarder.sent", { count: one.sent });
-  const received = t("forwarder.received", { count: one.received });
-  const refused = one.refused > 0 ? t("forwarder.refused", { count: one.refused }) : "";
-  return [line, sent, received, refused, one.text].filter(Boolean).join("; ");
 }

@@ -8,7 +8,7 @@ import { NOT_LOGGED_IN } from "./live/connection";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { followUp } from "./live/unanswered";
-import { notice, reset } from "./uiState";
+import { confirmDone, notice, reset } from "./uiState";
 import { keepBaseMap } from "./plan/baseMap";
 import { putDown } from "./plan/tools";
 import { soundBlocked, soundOn } from "./sound";
@@ -216,7 +216,7 @@ function forget(): void {
 function replayEnded(): void {
   replay.peek()?.session.close();
   replay.value = adopted;
-  notice.value = t("past.ended");
+  confirmDone(t("past.ended"));
 }
 
 /** `muster base replay` shows the past in place of the live picture. */

@@ -53,7 +53,25 @@ export const assessed = signal<NamedIncident | null>(null);
 /** The incident whose imports are listed. */
 export const withImports = signal<NamedIncident | null>(null);
 
+/** An error, or what the user must not miss: it stays until it is read. */
 export const notice = signal<string | null>(null);
+
+const SEEN_MS = 4_000;
+const READ_MS_PER_LETTER = 80;
+let passing: string | null = null;
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+/** A notice that confirms: it goes after the time that it takes to read it, or when a dialog opens. */
+export function confirmDone(text: string): void {
+  notice.value = passing = text;
+  clearTimeout(timer);
+  timer = setTimeout(endPassing, SEEN_MS + READ_MS_PER_LETTER * text.length);
+}
+
+function endPassing(): void {
+  if (notice.peek() === passing) notice.value = null;
+  passing = null;
+}
 
 /** Visible pane of a small screen; a large one shows both. */
 export type Pane = "people" | "plan";
@@ -73,6 +91,7 @@ export function find(unitId: string, on: number | null): void {
 }
 
 export function openDialog(name: DialogName, unitId: string | null = null): void {
+  endPassing();
   dialogUnit.value = unitId;
   dialog.value = name;
 }

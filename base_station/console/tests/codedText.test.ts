@@ -1,6 +1,7 @@
 /** Texts by the codes of the station, in every language. */
 import { afterEach, describe, expect, test } from "vitest";
 import { loadDeferred, show } from "../src/language/catalogue";
+import { units } from "../src/language/measures";
 import { codedText, codedTexts, preflightText, problemTexts, refusalText } from "../src/live/codedText";
 
 const FULL = {
@@ -48,6 +49,26 @@ describe("a text of the station", () => {
     expect(codedText(fault("of_a_later_version"), "")).toBe("of_a_later_version: is missing");
     const subject = { code: "check-subject-of", texts: { subject: "calibration", sensor: "foot" }, numbers: {} };
     expect(codedText(subject, "")).toBe("Kalibrierung von Fuß");
+  });
+
+  test("says the limit of a field in the chosen units", async () => {
+    await show("de");
+    await loadDeferred();
+    const limit = (field: string, fault: string, most: number) => ({
+      code: "field-fault",
+      texts: { field, fault: "", "fault:": fault },
+      numbers: { [fault === "field-too-low" ? "fault:least" : "fault:most"]: most },
+    });
+    expect(codedText(limit("par_interval_s", "field-too-low", 60), "")).toBe("PAR alle: muss mindestens 1\u00a0min 00\u00a0s sein");
+    expect(codedText(limit("target.reach_m", "field-too-high", 100), "")).toBe("Reichweite: darf höchstens 100\u00a0m sein");
+    expect(codedText(limit("plan_rotation_rad", "field-too-high", 2 * Math.PI), "")).toMatch(/360° sein$/);
+    expect(codedText(limit("lat_deg", "field-too-high", 90), "")).toMatch(/höchstens 90° sein$/);
+    expect(codedText(limit("position_rate_hz", "field-too-low", 0.1), "")).toMatch(/mindestens 0,1 Hz sein$/);
+    expect(codedText(limit("days", "field-too-high", 3650), "")).toMatch(/höchstens 3\.650 sein$/);
+    expect(codedText(limit("name", "field-too-long", 80), "")).toMatch(/höchstens 80 Zeichen/);
+    units.value = "imperial";
+    expect(codedText(limit("target.reach_m", "field-too-high", 100), "")).toMatch(/höchstens 328\u00a0ft sein$/);
+    units.value = "metric";
   });
 
   test("has texts within it in the chosen language, too", async () => {

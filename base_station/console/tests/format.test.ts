@@ -250,30 +250,3 @@ describe("where a sensor is worn", () => {
     expect(format.wornAt(sensor)).toBe(text);
   });
 });
-
-describe("a connection with another system", () => {
-  const county = {
-    name: "county",
-    kind: "tak",
-    address: "tls://tak.test:8089",
-    state: "connecting" as const,
-    since_ms: null,
-    sent: 1200,
-    received: 30,
-    refused: 2,
-    text: "does not answer",
-  };
-
-  it("says where it goes, how it stands and why", () => {
-    expect(format.forwarderLine(county)).toBe(
-      "TAK county (tls://tak.test:8089): not connected; 1,200 events sent; 30 received; 2 left out; does not answer",
-    );
-  });
-
-  it("says no reason where all is well", () => {
-    const well = { ...county, state: "connected" as const, refused: 0, text: "" };
-    expect(format.forwarderLine(well)).toBe(
-      "TAK county (tls://tak.test:8089): connected; 1,200 events sent; 30 received",
-    );
-  });
-});

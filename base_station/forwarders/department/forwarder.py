@@ -16,12 +16,13 @@ from base_station.forwarders.department.outbox import DepartmentOutbox, StoredEv
 from base_station.forwarders.interface import Surroundings
 from base_station.storage.projection import Projection
 from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.bus import Bus
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import Qos, department_events_key, department_summary_key
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import code_of_text, coded
 from shared.enrolment import Enrolment, Holder, read_enrolment
 from shared.errors import ConfigError, WireError
 from shared.tls import validity_problem
@@ -38,6 +39,7 @@ _KEPT_BY_STANDBY = 20_000  # events that the other one of two stations sends
 _CLOSE_S = 5.0
 
 logger = logging.getLogger(__name__)
+_OTHER_STATION = coded("department-other-station", "it answers another station")
 
 
 class DepartmentForwarder:
@@ -90,6 +92,7 @@ class DepartmentForwarder:
 
     def view(self) -> ForwarderView:
         status = self._status
+        text = status.reason or self._collecting.fault
         return ForwarderView(
             name=self._name,
             kind="department",
@@ -99,7 +102,8 @@ class DepartmentForwarder:
             sent=status.sent,
             received=0,
             refused=0,
-            text=status.reason or self._collecting.fault,
+            text=str(text),
+            text_code=text_code_view_or_none(code_of_text(text)),
         )
 
     def problem(self) -> str:
@@ -152,10 +156,12 @@ class DepartmentForwarder:
             return _RETRY_S
         receipt = self._send_batch(self._bus, batch)
         if receipt is None:
-            self._status.set("connecting", "it does not acknowledge events")
+            self._status.set(
+                "connecting", coded("department-no-receipt", "it does not acknowledge events")
+            )
             return _RETRY_S
         if receipt.refusal or receipt.epoch != self._outbox.epoch:
-            self._status.set("connected", receipt.refusal or "it answers another station")
+            self._status.set("connected", receipt.refusal or _OTHER_STATION)
             return _RETRY_S
         self._outbox.acknowledge(receipt.stored_seq)
         self._status.sent += sum(one.seq <= receipt.stored_seq for one in batch)
@@ -185,10 +191,18 @@ class DepartmentForwarder:
 
     def _away_reason(self) -> str:
         now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
-        renewal = f"renew it there with {self._enrolment.renewal_command}"
+        renewal = coded(
+            "certificate-renew-there",
+            "renew it there with {command}",
+            command=self._enrolment.renewal_command,
+        )
         return validity_problem(self._enrolment.identity, now, renewal) or (
-            "it does not answer; is it switched on, does the network lead there, and has it "
-            f"enrolled {self._enrolment.name}, which is not revoked?"
+            coded(
+                "department-no-answer",
+                "it does not answer; is it switched on, does the network lead there, and has it "
+                "enrolled {station}, which is not revoked?",
+                station=self._enrolment.name,
+            )
         )
 
 

@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from base_station.forwarders.tak.config import TakConfig
+from shared.coded_text import coded
 
 _CONNECT_S = 10.0
 _DRAIN_S = 10.0  # a server that takes nothing for so long has stalled
@@ -22,6 +23,9 @@ _DATAGRAM_BYTES = 65_000
 # Every call of the system waits its turn among the station's threads, up to 5 ms on a busy one.
 _BATCH_BYTES = 16_384
 _STALLED = "takes nothing that is sent"
+
+
+NO_ANSWER = coded("tak-no-answer", "does not answer")
 
 
 class ConnectionLostError(Exception):
@@ -54,9 +58,11 @@ class TakConnection:
                 data = await self._reader.read(_READ_BYTES)
                 is_over = not data
         except OSError as error:
-            raise ConnectionLostError(f"has broken the connection: {error}") from error
+            raise ConnectionLostError(
+                coded("tak-broken", "has broken the connection: {error}", error=str(error))
+            ) from error
         if is_over:
-            raise ConnectionLostError("has closed the connection")
+            raise ConnectionLostError(coded("tak-closed", "has closed the connection"))
         return bytes(data)
 
     def close(self) -> None:
@@ -86,7 +92,7 @@ def in_batches(events: Iterable[bytes]) -> Iterator[list[bytes]]:
 async def open_connection(config: TakConfig) -> TakConnection:
     """Raises ConnectionLostError with the reason."""
     reader, writer = await _within(
-        _library().protocol_factory(_pytak_settings(config)), _CONNECT_S, "does not answer"
+        _library().protocol_factory(_pytak_settings(config)), _CONNECT_S, NO_ANSWER
     )
     if not config.is_datagram:
         _bound_buffers(writer)
@@ -131,7 +137,14 @@ def _password(path: Path | None) -> str:
     try:
         return path.read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
-        raise ConnectionLostError(f"cannot be reached: {path} cannot be read ({error})") from error
+        raise ConnectionLostError(
+            coded(
+                "tak-password-unreadable",
+                "cannot be reached: {path} cannot be read ({error})",
+                path=str(path),
+                error=str(error),
+            )
+        ) from error
 
 
 async def _within(work: Awaitable[Any], timeout_s: float, phrase: str) -> Any:
@@ -142,9 +155,13 @@ async def _within(work: Awaitable[Any], timeout_s: float, phrase: str) -> Any:
     except ConnectionLostError:
         raise
     except ssl.SSLError as error:
-        raise ConnectionLostError(f"does not agree on TLS: {_reason_of(error)}") from error
+        raise ConnectionLostError(
+            coded("tak-tls", "does not agree on TLS: {error}", error=_reason_of(error))
+        ) from error
     except (OSError, SyntaxError, ValueError) as error:  # pytak's own of certificates, too
-        raise ConnectionLostError(f"cannot be reached: {_reason_of(error)}") from error
+        raise ConnectionLostError(
+            coded("tak-unreachable", "cannot be reached: {error}", error=_reason_of(error))
+        ) from error
 
 
 def _reason_of(error: Exception) -> str:

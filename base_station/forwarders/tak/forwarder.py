@@ -10,6 +10,7 @@ from base_station.forwarders.interface import Surroundings
 from base_station.forwarders.mailbox import Mailbox
 from base_station.forwarders.tak.config import TakConfig
 from base_station.forwarders.tak.connection import (
+    NO_ANSWER,
     ConnectionLostError,
     TakConnection,
     in_batches,
@@ -20,9 +21,10 @@ from base_station.forwarders.tak.inbox import ExternalInbox
 from base_station.forwarders.tak.outbox import TakOutbox
 from base_station.storage.projection import Projection
 from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.clock import NS_PER_S
-from shared.coded_text import coded
+from shared.coded_text import code_of_text, coded, text_of_error
 from shared.worker import Worker
 
 _FIRST_RETRY_S = 1.0
@@ -92,7 +94,8 @@ class TakForwarder:
             sent=status.sent,
             received=self._inbox.taken,
             refused=self._inbox.refused,
-            text=text,
+            text=str(text),
+            text_code=text_code_view_or_none(code_of_text(text)),
         )
 
     def problem(self) -> str:
@@ -105,7 +108,7 @@ class TakForwarder:
             name=self._name,
             url=self._config.url,
             away_s=away_s,
-            reason=self._status.reason or "does not answer",
+            reason=self._status.reason or NO_ANSWER,
         )
 
     def _wake(self) -> None:
@@ -129,7 +132,7 @@ class TakForwarder:
         try:
             asyncio.run(self._connect_and_serve())
         except ConnectionLostError as error:
-            self._status.set("connecting", str(error))
+            self._status.set("connecting", text_of_error(error))
         else:
             return 0.0  # another one leads, or the station stops
         pause_s, self._retry_s = self._retry_s, min(2.0 * self._retry_s, _RETRY_MAX_S)
@@ -191,7 +194,7 @@ class TakForwarder:
             return
         last_ns = self._last_received_ns
         if last_ns is not None and self._clock.monotonic_ns() - last_ns > _SILENT_NS:
-            raise ConnectionLostError("does not answer any more")
+            raise ConnectionLostError(coded("tak-silent", "does not answer any more"))
         await connection.send([self._events.ping(self._outbox.anchor, now_ms)])
 
     async def _receive(self, connection: TakConnection) -> None:

@@ -21,6 +21,7 @@ from base_station.forwarders.tak.cot import (
 from base_station.forwarders.tak.emergencies import Emergencies, EmergencyAlert
 from base_station.views.wire import AnchorView, PositionView, Snapshot, UnitView
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 
 _LIVE = "live"
 _NOT_LIVE_EVERY_NS = 10 * NS_PER_S  # without a link only the uncertainty grows
@@ -30,8 +31,10 @@ _WAY_PLACES = 60
 _WAYS_AT_ONCE = 3
 _WAY_STEP_M = 2.0
 _METRES_PER_DEG = 111_195.0
-_NO_PLACE = "nothing is sent, as the site has no place on the Earth: set the anchor"
-_NO_INCIDENT = "people are sent while an incident is open"
+_NO_PLACE = coded(
+    "tak-no-place", "nothing is sent, as the site has no place on the Earth: set the anchor"
+)
+_NO_INCIDENT = coded("tak-no-incident", "people are sent while an incident is open")
 _SOONEST_NS = NS_PER_S // 50
 
 
@@ -194,7 +197,11 @@ class TakOutbox:
             return _NO_PLACE
         unplaced = [one for one in self._emergencies.open_units if self._placed(one) is None]
         if unplaced:
-            return f"the emergency of {', '.join(unplaced)} cannot be shown: its place is unknown"
+            return coded(
+                "tak-emergency-unplaced",
+                "the emergency of {units} cannot be shown: its place is unknown",
+                units=", ".join(unplaced),
+            )
         return "" if self._incident_is_open else _NO_INCIDENT
 
 

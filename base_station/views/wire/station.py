@@ -46,6 +46,7 @@ class ForwarderView(Answer, frozen=True):
     received: int  # of other teams, since then
     refused: int  # of other teams, that could not be read or were too many
     text: str  # for a person: why it is not connected, or why less is sent; empty: all is well
+    text_code: TextCodeView | None = None  # of ``text``, where it has one
 
 
 class RadioView(Answer, frozen=True):
@@ -55,6 +56,7 @@ class RadioView(Answer, frozen=True):
     source: str  # device:NAME or a URL, without a password
     state: Annotated[str, one_of("recording", "away")]
     problem: str  # a sentence for a person; empty: it is recorded
+    problem_code: TextCodeView | None = None  # of ``problem``, where it has one
 
 
 class ArchiveView(Answer, frozen=True):
@@ -66,6 +68,7 @@ class ArchiveView(Answer, frozen=True):
     copied: int  # since the station started
     archived_ms: int | None  # when the last one was; null: none since the station started
     text: str  # for a person: why nothing can be copied; empty: all is well
+    text_code: TextCodeView | None = None  # of ``text``, where it has one
 
 
 class HealthView(Answer, frozen=True):

@@ -18,6 +18,7 @@ export interface AssignmentAnswer {
 export interface FaultyLine {
   line: number;
   fault: string;
+  fault_code: TextCodeView | null;
 }
 
 export interface ListedPersonAnswer {

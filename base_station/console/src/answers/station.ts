@@ -12,6 +12,7 @@ export interface ArchiveView {
   copied: number;
   archived_ms: number | null;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface AuditEntryAnswer {
@@ -37,6 +38,7 @@ export interface ForwarderView {
   received: number;
   refused: number;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface Health {
@@ -80,6 +82,7 @@ export interface RadioView {
   source: string;
   state: string;
   problem: string;
+  problem_code: TextCodeView | null;
 }
 
 export interface RecordingView {

@@ -1,7 +1,7 @@
 /** Texts by the codes and parameters of the station.  Pure. */
 import { bytes, dateAndTime, duration, minutes, percent, temperature } from "../format";
 import type { PartName, DeferredPart } from "../language/catalogue";
-import { far, length, listed } from "../language/measures";
+import { far, length, listed, number } from "../language/measures";
 import { knownLabel, knownMessage, label, t } from "../language/translate";
 import type { HealthView, PreflightView, TextCodeView } from "../wire";
 
@@ -14,6 +14,7 @@ const PARTS = [
   "drawing_note",
   "pin_reason",
   "transfer_problem",
+  "connection_reason",
   "dispatch_warning",
   "import_warning",
   "refusal_access",
@@ -49,7 +50,10 @@ function valuesOf({ texts, numbers }: TextCodeView): Record<string, string | num
   return Object.fromEntries([
     ...Object.entries(texts)
       .filter(([name]) => own(name))
-      .map(([name, text]) => [name, inWords(name, text, codeWithin({ code: "", texts, numbers }, name))]),
+      .map(([name, text]) => {
+        const code = codeWithin({ code: "", texts, numbers }, name);
+        return [name, inWords(name, text, name === "fault" ? withLimits(code, texts["field"]) : code)];
+      }),
     ...Object.entries(numbers)
       .filter(([name]) => own(name))
       .map(([name, value]) => [name, shown(name, value)]),
@@ -69,11 +73,36 @@ function inWords(name: string, text: string, code: TextCodeView): string {
   }
 }
 
-/** The label of a field by its place in the request, such as `unit_ids.2`: the innermost that has one, and
- * the number of an entry. */
+/** Where the innermost field with a label is named in a place of a request, such as `unit_ids.2`; -1: nowhere. */
+function fieldIn(parts: readonly string[]): number {
+  return parts.findLastIndex((part) => knownLabel("field_label", part) !== undefined);
+}
+
+const LIMITS = new Set(["field-not-above", "field-not-below", "field-too-high", "field-too-low"]);
+
+/** A fault with its limit as the console writes the quantity of that field: "1 min" of `par_interval_s`. */
+function withLimits(code: TextCodeView, place: string | undefined): TextCodeView {
+  if (place === undefined || !LIMITS.has(code.code)) return code;
+  const parts = place.split(".");
+  const field = parts[fieldIn(parts)] ?? place;
+  const limits = Object.entries(code.numbers).map(([name, value]) => [name, fieldValue(field, value)]);
+  return { code: code.code, texts: Object.fromEntries(limits), numbers: {} };
+}
+
+/** A value in the unit that the field's name ends with. */
+function fieldValue(field: string, value: number): string {
+  if (field.endsWith("_ms")) return dateAndTime(value);
+  if (field.endsWith("_hz")) return t("audit_value.rate", { value: written(value) });
+  if (field.endsWith("_rad")) return angle((value * 180) / Math.PI);
+  if (field.endsWith("_deg")) return angle(value);
+  const inUnit = shown(field, value);
+  return typeof inUnit === "string" ? inUnit : written(value);
+}
+
+/** The label of a field by its place in the request, and the number of an entry. */
 function fieldLabel(place: string): string {
   const parts = place.split(".");
-  const at = parts.findLastIndex((part) => knownLabel("field_label", part) !== undefined);
+  const at = fieldIn(parts);
   if (at < 0) return place;
   const words = knownLabel("field_label", parts[at]!) ?? place;
   const entry = Number(parts[at + 1]);
@@ -102,6 +131,14 @@ export function refusalText(document: unknown): string | undefined {
   const numbers = given.filter((one): one is [string, number] => typeof one[1] === "number");
   const coded = { code: String(code ?? ""), texts: Object.fromEntries(texts), numbers: Object.fromEntries(numbers) };
   return codedText(coded, detail);
+}
+
+function written(value: number): string {
+  return number(value, Number.isInteger(value) ? 0 : 1);
+}
+
+function angle(degrees: number): string {
+  return `${number(degrees)}°`;
 }
 
 /** A number in the unit that its name ends with; others are written by the message. */

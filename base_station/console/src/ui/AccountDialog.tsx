@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { attempt, leave, user } from "../sessions";
-import { notice, openDialog } from "../uiState";
+import { confirmDone, openDialog } from "../uiState";
 import * as api from "../api";
 import { dateAndTime } from "../format";
 import { listed } from "../language/measures";
@@ -49,7 +49,7 @@ function PasswordForm({ username }: { username: string }) {
         const { old = "", fresh = "" } = fields(event);
         const changed = api.changeOwnPassword(old, fresh).then(async () => {
           await leave(); // its sessions have ended
-          notice.value = t("account.password_changed");
+          confirmDone(t("account.password_changed"));
         });
         void attempt(changed);
       }}

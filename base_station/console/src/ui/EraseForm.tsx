@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
-import { notice } from "../uiState";
+import { confirmDone, notice } from "../uiState";
 import * as api from "../api";
 import { t } from "../language/translate";
 import { codedText } from "../live/codedText";
@@ -33,7 +33,8 @@ export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
     underWay.value = isOver(mine) ? null : mine;
     if (!wasUnderWay || !isOver(mine)) return;
     asked.value = false;
-    notice.value = outcome(mine);
+    if (mine.state === "done" && mine.problem === "") confirmDone(outcome(mine));
+    else notice.value = outcome(mine);
     done();
   };
   useEffect(() => {

@@ -1,4 +1,4 @@
-import { archiveLine, forwarderLine } from "../format";
+import { archiveLine, forwarderLine } from "../live/connections";
 import type { ArchiveView, ForwarderView } from "../wire";
 import { t } from "../language/translate";
 

@@ -5,6 +5,7 @@ import { attempt } from "../sessions";
 import "../styles/setup.css";
 import { listed } from "../language/measures";
 import { rich, t } from "../language/translate";
+import { codedText } from "../live/codedText";
 import { Columns } from "./Columns";
 import { useSinglePress } from "./useGuardedPress";
 import { Waiting } from "./Waiting";
@@ -40,8 +41,8 @@ export function PeopleImport({ file, done }: { file: File; done: () => void }) {
         <div class="warned" role="alert">
           <p>{t("people_import.faulty")}</p>
           <ul>
-            {faults.slice(0, MOST_FAULTS).map(({ line, fault }) => (
-              <li key={line}>{t("people_import.fault", { line, fault })}</li>
+            {faults.slice(0, MOST_FAULTS).map(({ line, fault, fault_code: code }) => (
+              <li key={line}>{t("people_import.fault", { line, fault: codedText(code ?? undefined, fault) })}</li>
             ))}
           </ul>
           {faults.length > MOST_FAULTS && <p>{t("people_import.more_faults", { count: faults.length - MOST_FAULTS })}</p>}

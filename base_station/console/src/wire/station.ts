@@ -35,6 +35,7 @@ export interface ForwarderView {
   received: number;
   refused: number;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface RadioView {
@@ -42,6 +43,7 @@ export interface RadioView {
   source: string;
   state: "recording" | "away";
   problem: string;
+  problem_code: TextCodeView | null;
 }
 
 export interface ArchiveView {
@@ -51,6 +53,7 @@ export interface ArchiveView {
   copied: number;
   archived_ms: number | null;
   text: string;
+  text_code: TextCodeView | null;
 }
 
 export interface HealthView {

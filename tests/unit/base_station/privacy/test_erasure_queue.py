@@ -17,6 +17,7 @@ from base_station.privacy.erasure_queue import (
     request_again,
 )
 from base_station.privacy.erasure_service import ErasureService
+from shared.coded_text import TextCode, coded
 from shared.errors import StoreError, UserError
 from tests.rig.waiting import until
 
@@ -32,6 +33,8 @@ class StubEraser:
         self.again: list[bool] = []
         self.done: list[str] = []
         self.from_peer: list[bool] = []
+        self.damaged: list[str] = []
+        self.kept: list[str] = []
 
     def erase_person(
         self,
@@ -47,6 +50,9 @@ class StubEraser:
         self.again.append(progress.again)
         on_progress(0.1)
         progress.records, progress.files = progress.records + 7, progress.files + 2
+        for part in self.damaged:
+            progress.note_damage(part, written_anew=False)
+        progress.kept = tuple(self.kept)
         if self.fails:
             raise self.fails.pop(0)
         on_progress(0.5)
@@ -205,3 +211,29 @@ def test_erasure_whose_order_was_cut_off_is_requested_again(tmp_path: Path) -> N
         request_again(tmp_path / "kept.json", "person", "p-1")
     (waiting,) = desk(StubEraser(), tmp_path).own_waiting()
     assert (waiting.kind, waiting.subject_id) == ("person", "p-1")
+
+
+def test_what_is_damaged_and_what_stays_has_the_codes_of_all_attempts(tmp_path: Path) -> None:
+    worker = StubEraser()
+    worker.damaged, worker.fails = ["segment 3"], [StoreError("the disk is full")]
+    worker.kept = [coded("radio-stays", "The radio stays")]
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].problem != "")
+    worker.damaged = []  # the second attempt does not meet it again
+    worker.go.set()
+    with desk(worker, tmp_path) as again:
+        until(lambda: again.all()[0].state is ErasureState.DONE)
+        (done,) = again.all()
+    damage = "Damaged: segment 3; it stays, with all people in it"
+    assert done.problem == f"{damage}. The radio stays"
+    assert done.problem_code == TextCode(
+        "erasure-left",
+        {
+            "before": damage,
+            "before:": "erasure-damage-stays",
+            "before:part": "segment 3",
+            "last": "The radio stays",
+            "last:": "radio-stays",
+        },
+    )

@@ -41,13 +41,13 @@ export const refusal_form: Part<"refusal_form"> = {
   "field-entries-too-many":
     "hat zu viele Einträge; geben Sie höchstens {most, number} an",
   "field-not-above":
-    "muss mehr als {limit, number} sein",
+    "muss mehr als {limit} sein",
   "field-too-low":
-    "muss mindestens {least, number} sein",
+    "muss mindestens {least} sein",
   "field-not-below":
-    "muss weniger als {limit, number} sein",
+    "muss weniger als {limit} sein",
   "field-too-high":
-    "darf höchstens {most, number} sein",
+    "darf höchstens {most} sein",
   "field-one-line":
     "muss eine Zeile einfacher Zeichen sein",
   "field-name":

@@ -76,4 +76,8 @@ export const refusal_people: Part<"refusal_people"> = {
     "{folder} ist keine Zertifizierungsstelle; erstellen Sie eine mit „muster pki init“",
   "station-certificate-unusable":
     "{folder}/station.pem und station.key sind nicht brauchbar ({error}); erstellen Sie neue mit „muster pki renew-station“",
+  "csv-person-twice": "{name} steht schon in Zeile {line, number}; unterscheiden Sie die beiden durch ihre Namen",
+  "csv-name-missing": "der Name fehlt",
+  "csv-text-faulty": "{field} ist länger als {most, number} Buchstaben oder nicht aus einfachen Buchstaben",
+  "csv-person-ambiguous": "{name} heißen hier zwei Personen; benennen Sie zuerst eine um",
 };

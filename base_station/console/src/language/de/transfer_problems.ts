@@ -3,6 +3,13 @@ import type { Part } from "../catalogue";
 
 export const transfer_problem: Part<"transfer_problem"> = {
   "erasure-again": "es wird erneut versucht: {reason}",
+  "erasure-damage-gone": "Beschädigt: {part}; der unlesbare Teil ist gelöscht",
+  "erasure-damage-stays": "Beschädigt: {part}; es bleibt, mit allen Personen darin",
+  "erasure-imports-kept":
+    "Eingebrachte Dateien bleiben, wie sie kamen, mit Personen und Stimmen darin: Nehmen Sie die heraus, in denen die Person vorkommt",
+  "erasure-left": "{before}. {last}",
+  "erasure-other-has-it":
+    "Die andere Station des Paars hat noch alles, bis diese gestartet und mit ihr verbunden ist",
   "erasure-radio-kept":
     "Funkaufnahmen aus der Zeit, als ein anderer Einsatz offen war, bleiben, bis auch dieser gelöscht wird: Niemand kann sagen, wer darin spricht",
   "recording-deleted": "gelöscht: Die Daten des Trägers sind gelöscht",

@@ -1,5 +1,6 @@
 /** Texts that nobody sees at the start, in English: fetched when the page is shown. */
 export * from "./assessment_reasons";
+export * from "./connection_reasons";
 export * from "./dispatch_warnings";
 export * from "./drawing_notes";
 export * from "./field_labels";

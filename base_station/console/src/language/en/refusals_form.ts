@@ -39,13 +39,13 @@ export const refusal_form = {
   "field-entries-too-many":
     "has too many entries; give {most, number} or fewer",
   "field-not-above":
-    "must be more than {limit, number}",
+    "must be more than {limit}",
   "field-too-low":
-    "must be {least, number} or more",
+    "must be {least} or more",
   "field-not-below":
-    "must be less than {limit, number}",
+    "must be less than {limit}",
   "field-too-high":
-    "must be {most, number} or less",
+    "must be {most} or less",
   "field-one-line":
     "must be one line of plain characters",
   "field-name":

@@ -74,4 +74,8 @@ export const refusal_people = {
     "{folder} is no certificate authority; make one with “muster pki init”",
   "station-certificate-unusable":
     "{folder}/station.pem and station.key are of no use ({error}); make new ones with “muster pki renew-station”",
+  "csv-person-twice": "{name} is in line {line, number} already; tell the two apart by their names",
+  "csv-name-missing": "the name is missing",
+  "csv-text-faulty": "{field} is longer than {most, number} letters, or not of plain letters",
+  "csv-person-ambiguous": "{name} is the name of two people here; rename one of them first",
 };

@@ -2,6 +2,13 @@
 
 export const transfer_problem = {
   "erasure-again": "it is tried again: {reason}",
+  "erasure-damage-gone": "Damaged: {part}; its unreadable part is gone",
+  "erasure-damage-stays": "Damaged: {part}; it stays, with all people in it",
+  "erasure-imports-kept":
+    "Imported files stay as they came, with people and voices in them: take out those that have the person",
+  "erasure-left": "{before}. {last}",
+  "erasure-other-has-it":
+    "The other station of the pair has all of it until this one is started and the two are linked",
   "erasure-radio-kept":
     "What was recorded of the radio while another incident was open stays until that is forgotten, too: nobody can tell who of them speaks",
   "recording-deleted": "deleted: its wearer is forgotten",

@@ -41,13 +41,13 @@ export const refusal_form: Part<"refusal_form"> = {
   "field-entries-too-many":
     "a trop d’éléments\u00a0; donnez-en au plus {most, number}",
   "field-not-above":
-    "doit être supérieur à {limit, number}",
+    "doit être supérieur à {limit}",
   "field-too-low":
-    "doit être d’au moins {least, number}",
+    "doit être d’au moins {least}",
   "field-not-below":
-    "doit être inférieur à {limit, number}",
+    "doit être inférieur à {limit}",
   "field-too-high":
-    "doit être d’au plus {most, number}",
+    "doit être d’au plus {most}",
   "field-one-line":
     "doit être une ligne de caractères simples",
   "field-name":

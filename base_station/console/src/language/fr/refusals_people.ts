@@ -76,4 +76,8 @@ export const refusal_people: Part<"refusal_people"> = {
     "{folder} n’est pas une autorité de certification\u00a0; créez-en une avec «\u00a0muster pki init\u00a0»",
   "station-certificate-unusable":
     "{folder}/station.pem et station.key sont inutilisables ({error})\u00a0; créez-en de nouveaux avec «\u00a0muster pki renew-station\u00a0»",
+  "csv-person-twice": "{name} figure déjà à la ligne {line, number}\u00a0; distinguez les deux par leurs noms",
+  "csv-name-missing": "le nom manque",
+  "csv-text-faulty": "{field} dépasse {most, number} lettres, ou n’est pas en lettres simples",
+  "csv-person-ambiguous": "{name} est ici le nom de deux personnes\u00a0; renommez d’abord l’une d’elles",
 };

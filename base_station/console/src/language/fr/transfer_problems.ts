@@ -3,6 +3,13 @@ import type { Part } from "../catalogue";
 
 export const transfer_problem: Part<"transfer_problem"> = {
   "erasure-again": "nouvel essai en cours\u00a0: {reason}",
+  "erasure-damage-gone": "Endommagé\u00a0: {part}\u00a0; la partie illisible est effacée",
+  "erasure-damage-stays": "Endommagé\u00a0: {part}\u00a0; cela reste, avec toutes les personnes qui y figurent",
+  "erasure-imports-kept":
+    "Les fichiers importés restent tels quels, avec des personnes et des voix\u00a0: retirez ceux où figure la personne",
+  "erasure-left": "{before}. {last}",
+  "erasure-other-has-it":
+    "L’autre station de la paire garde tout jusqu’à ce que celle-ci soit démarrée et reliée à elle",
   "erasure-radio-kept":
     "Les enregistrements radio faits pendant qu’une autre intervention était ouverte restent jusqu’à ce qu’elle soit effacée aussi\u00a0: personne ne peut dire qui y parle",
   "recording-deleted": "supprimé\u00a0: les données du porteur sont effacées",
