@@ -7,6 +7,7 @@ from enum import Enum
 from base_station.core.events import MessageNumber, Received, StationEvent, number_of
 from base_station.core.state import StationState
 from shared.channels import STATION, UP, Qos, parse_key
+from shared.coded_text import coded
 from shared.errors import UnknownChannelError
 
 
@@ -64,3 +65,20 @@ def _reason_to_drop(event: StationEvent, state: StationState) -> Admission | Non
         if is_live and sender.is_restart_storm(boot_id, event.t_ns)
         else None
     )
+
+
+def rejection_reason(admission: Admission, key: str) -> str:
+    """Return why a message is rejected, as a sentence for a person; empty: no fault of a sender."""
+    if admission is Admission.FORGED:
+        return coded(
+            "sender-forged",
+            "A sender on the bus claims to be the station ({key}): rejected",
+            key=key,
+        )
+    if admission is Admission.RESTART_STORM:
+        return coded(
+            "restart-storm",
+            "A unit's program starts more often than any does ({key}): left out",
+            key=key,
+        )
+    return ""

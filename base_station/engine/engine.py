@@ -19,12 +19,13 @@ import msgspec
 from base_station.core.commands import command_tracker
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.action_queue import ActionQueue
-from base_station.engine.admission import Admission, classify, mark_missing
+from base_station.engine.admission import Admission, classify, mark_missing, rejection_reason
 from base_station.engine.checkpoint_writer import CheckpointWriter
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.console_recorder import ConsoleRecorder
 from base_station.engine.delivery_queue import DeliveryQueue
 from base_station.engine.delta_pace import DeltaPace
+from base_station.engine.external_queue import ExternalQueue
 from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.message_report import message_report
 from base_station.engine.ports import ActionResult, DeliveryResult, EnginePorts, Record, Trails
@@ -32,12 +33,11 @@ from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
 from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.wire import Snapshot
-from shared.channels import EXTERNAL, OPERATOR, TICK
+from shared.channels import OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
-from shared.coded_text import coded
 from shared.header_factory import HeaderFactory
-from shared.messages import STATION_ID, ExternalMarker, ExternalMarkers, Tick
+from shared.messages import STATION_ID, ExternalMarker, Tick
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
@@ -59,9 +59,7 @@ MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
 FINISH_NS = 2 * NS_PER_S  # at the end, for records that wait in the feed
 STOP_TIMEOUT_S = 10.0
 
-_EXTERNAL_KEY = EXTERNAL.key(STATION_ID)
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
-_EXTERNAL_WAITING = 20  # batches of other systems, of a second each
 # Commands to units change with these at once; with all else at the next tick.
 _CHANGES_ORDERS = (
     SendCommand,
@@ -102,9 +100,7 @@ class StationEngine:
         self._actions = ActionQueue(pipeline, self._write_ahead, self._header_factory)
         self._deliveries = DeliveryQueue(pipeline, ports.log, ports.clock)
         self._lost: deque[Lost] = deque()
-        self._external: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
-            maxlen=_EXTERNAL_WAITING
-        )
+        self._external = ExternalQueue(self._write_ahead, self._header_factory)
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._unlinked: frozenset[str] = frozenset()  # as reported last
         self._receives_first = False
@@ -164,9 +160,7 @@ class StationEngine:
 
     def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
         """Take people and markers of other teams; of a flood the newest stay."""
-        if len(self._external) == _EXTERNAL_WAITING:
-            log.warning("other systems send markers faster than they are taken: some are left out")
-        self._external.append((markers, removed))
+        self._external.put(markers, removed)
         self._ports.feed.wake()
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
@@ -227,7 +221,7 @@ class StationEngine:
                 self._health.report_bug("drive", error)
         if not follows:  # on half a log the effect of an action is unknown
             self._take_actions()
-            self._take_external()
+            self._external.apply_waiting(self._actions.not_before_ns)
             self._deliveries.admit_waiting(self._admit)
         self._mark_missing()
         now_ns = clock.monotonic_ns()
@@ -281,20 +275,8 @@ class StationEngine:
             self._write_ahead.append(event, key, payload, urgent=True)
         elif admission is Admission.DUPLICATE:
             self._repeated += 1
-        elif admission is Admission.FORGED:
-            text = coded(
-                "sender-forged",
-                "A sender on the bus claims to be the station ({key}): rejected",
-                key=key,
-            )
-            self._health.report("bus", text)
-        elif admission is Admission.RESTART_STORM:
-            text = coded(
-                "restart-storm",
-                "A unit's program starts more often than any does ({key}): left out",
-                key=key,
-            )
-            self._health.report("bus", text)
+        elif reason := rejection_reason(admission, key):
+            self._health.report("bus", reason)
         return admission
 
     def _take_actions(self) -> None:
@@ -305,12 +287,6 @@ class StationEngine:
                 self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
             done.answer()
             self._delta_pace.send_at_once()  # its operator sees it at once
-
-    def _take_external(self) -> None:
-        for _ in range(len(self._external)):
-            message = ExternalMarkers(self._header_factory.header(), *self._external.popleft())
-            t_ns = max(message.header.t_utc_ns, self._actions.not_before_ns)
-            self._write_ahead.append_and_apply(t_ns, _EXTERNAL_KEY, encode(message))
 
     def _mark_missing(self) -> None:
         for _ in range(len(self._lost)):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -25,21 +24,19 @@ from base_station.report.contents import (
     ImportEntry,
     Interval,
     OrderEntry,
-    PersonEntry,
     Photographs,
     ReportContents,
     TimelineEntry,
     UnitEntry,
-    WornTime,
 )
 from base_station.report.incident_entries import entries_of_incident
 from base_station.report.log_facts import LogFacts, read_facts, series_within, wanted_keys
 from base_station.report.orders import details_of, kind_name, orders_of
+from base_station.report.people import IncidentPeople
 from base_station.report.photographs import photographs_of
-from base_station.report.trail import measure
-from base_station.site.plan import Plan, salvage_plan
+from base_station.site.plan import salvage_plan
 from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry, IncidentRow
-from base_station.storage.db.records import Records, TrackSample
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.window import Window
@@ -95,7 +92,9 @@ class _Collector:
         self._assignments = sources.roster.assignments(incident.opened_ns, until_ns)
         done = [one for one in records.audit_entries(self._window) if one.action in _ACTIONS]
         entries = entries_of_incident(done, incident.incident_id, self._members, self._assignments)
-        self._wearings = self._all_wearings()
+        self._people = IncidentPeople(
+            records, sources.roster, self._members, self._assignments, self._during, self._window
+        )
         self._entries = sorted(entries, key=lambda one: (one.t_ns, one.number))
 
     def contents(self, on_progress: Progress) -> ReportContents:
@@ -103,7 +102,7 @@ class _Collector:
         geojson = sources.records.plan(self._window.until_ns, incident.site_id)
         plan = None if geojson is None else salvage_plan(geojson)
         facts = self._facts(lambda done: on_progress(0.8 * done))
-        people = self._people(plan, facts, lambda done: on_progress(0.8 + 0.2 * done))
+        people = self._people.entries(plan, facts, lambda done: on_progress(0.8 + 0.2 * done))
         kept = sources.kept.report(incident.incident_id)
         report = None if kept is None else read_report(kept)
         traces = tuple(self._traces(facts))
@@ -163,87 +162,12 @@ class _Collector:
         report = self._sources.records.dispatch(number) if number else None
         return "" if report is None else self._shown(description(report))
 
-    # ---- people
-
-    def _all_wearings(self) -> Mapping[str, Sequence[WornTime]]:
-        """By unit, oldest first; a unit that was not worn has one without a name."""
-        roster = self._sources.roster
-        found: dict[str, list[WornTime]] = {}
-        last_person: dict[str, str] = {}
-        for one in self._assignments:
-            until_ns = self._during.until_ns if one.until_ns is None else one.until_ns
-            for during in self._present(one.unit_id, Interval(one.from_ns, until_ns)):
-                known, of_unit = roster.wearer(one), found.setdefault(one.unit_id, [])
-                is_same = last_person.get(one.unit_id) == one.person_id
-                if of_unit and is_same and of_unit[-1].during.until_ns == during.from_ns:
-                    during = Interval(of_unit.pop().during.from_ns, during.until_ns)  # noqa: PLW2901
-                last_person[one.unit_id] = one.person_id
-                of_unit.append(WornTime(one.unit_id, known.name, known.crew, known.role, during))
-        for unit_id in self._sources.records.track_units(self._window):
-            if unit_id not in found:
-                present = self._present(unit_id, self._during)
-                found[unit_id] = [WornTime(unit_id, "", "", "", during) for during in present]
-        return {unit_id: worn for unit_id, worn in sorted(found.items()) if worn}
-
-    def _present(self, unit_id: str, worn: Interval) -> list[Interval]:
-        """Parts of a time in which the unit was in the incident."""
-        windows = self._members.of(unit_id)
-        parts = [Interval(one.from_ns, one.until_ns).within(worn) for one in windows]
-        return [part for one in parts if one and (part := one.within(self._during))]
-
-    def _name_at(self, unit_id: str, t_ns: int) -> str:
-        for one in self._wearings.get(unit_id, ()):
-            if one.name and one.during.from_ns <= t_ns <= one.during.until_ns:
-                return f"{one.name} ({unit_id})"
-        return unit_id
-
-    def _people(
-        self, plan: Plan | None, facts: LogFacts, on_progress: Progress
-    ) -> tuple[PersonEntry, ...]:
-        found = []
-        for done, (unit_id, worn) in enumerate(self._wearings.items(), 1):
-            points = self._sources.records.track(unit_id, self._window)
-            for row, wearing in enumerate(worn):
-                found.append(self._person(row, wearing, _part(points, wearing.during), plan, facts))
-            on_progress(done / len(self._wearings))
-        found.sort(key=lambda one: (one.wearing.crew, one.wearing.name, one.wearing.unit_id))
-        return tuple(
-            msgspec.structs.replace(one, number=number) for number, one in enumerate(found, 1)
-        )
-
-    def _person(
-        self,
-        row: int,
-        wearing: WornTime,
-        points: Sequence[TrackSample],
-        plan: Plan | None,
-        facts: LogFacts,
-    ) -> PersonEntry:
-        unit = facts.units[wearing.unit_id]
-        gaps = [gap.within(wearing.during) for gap in unit.radio_gaps]
-        radio_gaps = tuple(gap for gap in gaps if gap is not None)
-        figures = measure(points, plan, radio_gaps)
-        return PersonEntry(
-            number=0,
-            wearing=wearing,
-            positions=len(points),
-            distance_m=figures.distance_m,
-            inside_s=figures.inside_s,
-            floors=figures.floors,
-            hottest=unit.hottest.get(row),
-            dose=unit.doses.get(row, 0.0),
-            radio_gaps=radio_gaps,
-            trails=figures.trails,
-            begin=_place(points[0]) if points else None,
-            end=_place(points[-1]) if points else None,
-        )
-
     # ---- facts of the log
 
     def _facts(self, on_progress: Progress) -> LogFacts:
         sources = self._sources
         wearings = {
-            unit_id: [one.during for one in worn] for unit_id, worn in self._wearings.items()
+            unit_id: [one.during for one in worn] for unit_id, worn in self._people.wearings.items()
         }
         about: dict[str, list[Interval]] = {}
         for alarm in self._explained_alarms()[:MOST_TRACES]:
@@ -251,13 +175,13 @@ class _Collector:
         while sources.defects.check_next_chunk():
             pass  # into all of it: unreadable parts must be in the report
         records = sources.log.records(
-            self._window.from_ns, self._window.until_ns, wanted_keys(self._wearings)
+            self._window.from_ns, self._window.until_ns, wanted_keys(self._people.wearings)
         )
         return read_facts(records, self._during, wearings, about, on_progress)
 
     def _explained_alarms(self) -> Sequence[AlarmRow]:
         """Alarms of units that are in the report, most urgent first."""
-        of_units = [one for one in self._alarms if one.unit_id in self._wearings]
+        of_units = [one for one in self._alarms if one.unit_id in self._people.wearings]
         return sorted(of_units, key=lambda one: (one.priority, one.raised_ns, one.alarm_id))
 
     def _traces(self, facts: LogFacts) -> Iterable[AlarmTrace]:
@@ -296,7 +220,7 @@ class _Collector:
     def _done(self) -> Iterable[TimelineEntry]:
         for entry in self._entries:
             details = self._order_details(entry)
-            name_of = partial(self._name_at, t_ns=entry.t_ns)
+            name_of = partial(self._people.name_at, t_ns=entry.t_ns)
             described = (
                 texts.action_text(entry.action, details, name_of) if details else texts.ERASED
             )
@@ -336,12 +260,13 @@ class _Collector:
         )
 
     def _named_orders(self, facts: LogFacts) -> tuple[OrderEntry, ...]:
+        name_at = self._people.name_at
         return tuple(
             msgspec.structs.replace(
                 order,
                 text=self._shown(order.text),
                 receipts=tuple(
-                    msgspec.structs.replace(one, unit_id=self._name_at(one.unit_id, order.t_ns))
+                    msgspec.structs.replace(one, unit_id=name_at(one.unit_id, order.t_ns))
                     for one in order.receipts
                 ),
             )
@@ -375,20 +300,10 @@ class _Collector:
                 yield f"{rule.name}.{name}", now, usual
 
     def _units(self) -> Iterable[UnitEntry]:
-        for unit_id in self._wearings:
+        for unit_id in self._people.wearings:
             unit = self._sources.roster.unit(unit_id)
             if unit is not None:
                 yield UnitEntry(unit_id, unit.software_version, unit.tracker, unit.calibration)
-
-
-def _part(points: Sequence[TrackSample], during: Interval) -> Sequence[TrackSample]:
-    begin = bisect_right(points, during.from_ns - 1, key=lambda one: one.t_ns)
-    end = bisect_right(points, during.until_ns, key=lambda one: one.t_ns)
-    return points[begin:end]
-
-
-def _place(point: TrackSample) -> tuple[int | None, float, float]:
-    return point.floor, point.east_m, point.north_m
 
 
 def _about(alarm: AlarmRow) -> Interval:

@@ -6,17 +6,17 @@ not be lost (alarms, actions, alerts) is waited for.
 
 from __future__ import annotations
 
-import errno
 import logging
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Condition, Lock, RLock
 
+from base_station.storage.segment_list import SegmentHandler, SegmentList, ignore_segment
 from shared.channels import OPERATOR, Qos, parse_key
 from shared.clock import NS_PER_S, Clock
 from shared.coded_text import Measure, coded, join_texts
@@ -27,10 +27,7 @@ from shared.mcap_log import (
     Recovery,
     SegmentInfo,
     SegmentPolicy,
-    SegmentReader,
     SegmentWriter,
-    own_segments,
-    recover_log,
 )
 from shared.worker import Worker
 
@@ -47,10 +44,6 @@ _LITTLE_FREE_BYTES = 1_000_000_000
 _RECORD_BYTES = 200  # that a record takes in memory beside the bytes of its key and payload
 _ALERTS_SHARE = 1.25  # of the bytes that may wait for the disk, until alerts are refused
 _ACTIONS_SHARE = 1.5  # and until actions are refused
-_TAKES_NOTHING = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # of a full disk, or a
-# failed one that the system has made read-only
-
-SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and the note of its recovery
 
 
 def _share_of(key: str) -> float:
@@ -63,26 +56,9 @@ def _share_of(key: str) -> float:
     return _ALERTS_SHARE if channel.qos is Qos.ALERT else 1.0
 
 
-def _recover(folder: Path) -> tuple[Recovery, ...]:
-    """Recover the segments.  A full or read-only disk does not prevent the start: a torn segment
-    stays readable, and is recovered at a later start.  Raises LogError.
-    """
-    try:
-        return tuple(recover_log(folder))
-    except LogError as error:
-        if getattr(error.__cause__, "errno", None) not in _TAKES_NOTHING:
-            raise
-        logger.warning("%s", error)
-        return ()
-
-
 def _clock_time(t_ns: int) -> Measure:
     t_s = t_ns // NS_PER_S
     return Measure(t_s, f"{datetime.fromtimestamp(t_s, UTC):%H:%M:%S}")
-
-
-def _ignore(_: SegmentInfo, __: str) -> None:
-    """For a recorder without a list of segments."""
 
 
 class Recorder:
@@ -98,7 +74,7 @@ class Recorder:
         data: Path,
         clock: Clock,
         policy: SegmentPolicy | None = None,
-        on_segment: SegmentHandler = _ignore,
+        on_segment: SegmentHandler = ignore_segment,
     ) -> None:
         """Takes the folder, mends what a crash left torn, and begins to record.
 
@@ -107,7 +83,6 @@ class Recorder:
         DataFolderInUseError, or LogError when the folder cannot be used.
         """
         self._clock = clock
-        self._on_segment = on_segment
         self.rewriting = Lock()  # held while a complete segment is exchanged
         policy = policy or SegmentPolicy()
         self._waiting_max = policy.waiting_bytes_max
@@ -115,11 +90,10 @@ class Recorder:
         self._lock = FolderLock(data)
         with ExitStack() as undo:
             undo.callback(self._lock.close)
-            self.recoveries: tuple[Recovery, ...] = _recover(self.folder)
-            self._segments = self._look_up_segments()
+            self._list = SegmentList(self.folder, on_segment)
             # Taken records are kept: this recorder refuses, so that the writer never has to.
             patient = replace(policy, waiting_bytes_max=sys.maxsize)
-            self._writer = SegmentWriter(self.folder, patient, self._segment_closed)
+            self._writer = SegmentWriter(self.folder, patient, self._list.add)
             undo.pop_all()
         self._taking = RLock()
         self._news = Condition(self._taking)
@@ -191,14 +165,21 @@ class Recorder:
                     reason=self.problem,
                 )
             )
-        return tuple(segment.path for segment in self._segments)
+        return tuple(segment.path for segment in self._list.segments)
 
     def note_rewritten(self, path: Path) -> None:
         """A complete segment has another content now."""
-        with SegmentReader(path) as reader:
-            info = reader.info()
-        with self._news:
-            self._segments = tuple(info if one.path == path else one for one in self._segments)
+        self._list.note_rewritten(path)
+
+    @property
+    def recoveries(self) -> tuple[Recovery, ...]:
+        """Segments that a crash left torn, and that were recovered at the start."""
+        return self._list.recoveries
+
+    @property
+    def foreign(self) -> Mapping[Path, str]:
+        """MCAP files in the folder that are not of the log, each with the reason in words."""
+        return self._list.foreign
 
     @property
     def problem(self) -> str:
@@ -291,7 +272,7 @@ class Recorder:
     def segments(self) -> tuple[SegmentInfo, ...]:
         """Segments of the log, in order; the last one may be open."""
         current = self._writer.current()
-        return (*self._segments, *([] if current is None else [current]))
+        return (*self._list.segments, *([] if current is None else [current]))
 
     def close(self) -> None:
         """Write what is left, end the segment in order, and let go of the folder."""
@@ -381,24 +362,3 @@ class Recorder:
         with self._news:
             self._flushes_done = flushes
             self._news.notify_all()
-
-    def _segment_closed(self, info: SegmentInfo) -> None:
-        with self._news:
-            self._segments = (*self._segments, info)
-        self._report_segment(info, "")
-
-    def _report_segment(self, info: SegmentInfo, note: str) -> None:
-        try:
-            self._on_segment(info, note)
-        except Exception:
-            logger.exception("segment %s is not in the list of segments", info.path.name)
-
-    def _look_up_segments(self) -> tuple[SegmentInfo, ...]:
-        notes = {recovery.path: str(recovery) for recovery in self.recoveries}
-        segments = []
-        own, self.foreign = own_segments(self.folder)
-        for path in own:
-            with SegmentReader(path) as reader:
-                segments.append(reader.info())
-            self._report_segment(segments[-1], notes.get(path, ""))
-        return tuple(segments)

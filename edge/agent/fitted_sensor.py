@@ -9,7 +9,7 @@ import msgspec
 from edge.calibration.correction import Correction
 from edge.calibration.file import identity
 from edge.calibration.model import Calibration
-from edge.sample_codec.codec import unit_sensor
+from edge.sample_codec.descriptions import unit_sensor
 from edge.samples import SensorDescription
 from shared.messages import UnitSensor
 

@@ -21,7 +21,8 @@ from edge.agent.position_publisher import PositionPublisher
 from edge.agent.temperatures import AmbientTemperature, CurrentReadings
 from edge.agent.unit_sensors import UnitSensors
 from edge.clocks.timeline import Timeline
-from edge.sample_codec.codec import described_unit, gps_fix, is_sendable, sighting, whole_seconds
+from edge.sample_codec.codec import gps_fix, is_sendable, sighting, whole_seconds
+from edge.sample_codec.descriptions import described_unit
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import (
     CANCEL,

@@ -8,7 +8,7 @@ from pathlib import Path
 from edge.agent.fitted_sensor import FittedSensor
 from edge.app.calibration_in_use import calibration_in_use
 from edge.config import EdgeConfig
-from edge.sample_codec.codec import sensor_of, unit_sensor
+from edge.sample_codec.descriptions import sensor_of, unit_sensor
 from edge.sources.interface import Source, sensors_in
 from shared.errors import ConfigError
 

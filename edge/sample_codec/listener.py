@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from threading import Condition, Event
 
-from edge.sample_codec.codec import sensors_of
+from edge.sample_codec.descriptions import sensors_of
 from edge.samples import SensorDescription
 from shared.bus import Bus
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, raw_journal_key

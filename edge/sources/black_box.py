@@ -8,7 +8,8 @@ import logging
 from collections.abc import Iterator
 from pathlib import Path
 
-from edge.sample_codec.codec import batch_of, sensors_of
+from edge.sample_codec.codec import batch_of
+from edge.sample_codec.descriptions import sensors_of
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.interface import OfflineSource
 from shared.channels import DESCRIPTION, Channel, parse_key

@@ -10,7 +10,8 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder, raw_imu, unit_sensor
+from edge.sample_codec.codec import SampleEncoder, raw_imu
+from edge.sample_codec.descriptions import unit_sensor
 from edge.sample_codec.listener import RawStreamListener
 from edge.sources.bus import BusSource
 from edge.sources.iio.source import IioSource

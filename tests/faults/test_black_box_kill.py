@@ -18,7 +18,8 @@ WRITER = """
 import sys, time
 from pathlib import Path
 from edge.storage.black_box.black_box import BlackBox
-from edge.sample_codec.codec import SampleEncoder, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.descriptions import unit_sensor
 from edge.sources.registry import open_source
 from shared.clock import SystemClock
 source = open_source("simulated:straight")

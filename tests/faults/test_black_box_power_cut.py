@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.descriptions import unit_sensor
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox

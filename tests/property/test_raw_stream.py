@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from edge.sample_codec.codec import SampleEncoder, batch_of, sensors_of, unit_sensor
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.descriptions import sensors_of, unit_sensor
 from edge.samples import (
     AmbientSample,
     BatterySample,

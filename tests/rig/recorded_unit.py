@@ -8,7 +8,8 @@ from pathlib import Path
 
 from base_station.unit_sync.recordings.transfer import Transfer, TransferRequest
 from edge.clocks.station import StationClock
-from edge.sample_codec.codec import SampleEncoder, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.descriptions import unit_sensor
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer

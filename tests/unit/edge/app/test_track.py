@@ -11,7 +11,8 @@ import typer
 from typer.testing import CliRunner
 
 from edge.app.track import COLUMNS, track
-from edge.sample_codec.codec import SampleEncoder, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.descriptions import unit_sensor
 from edge.samples import AmbientSample, SensorBatch, SensorDescription
 from edge.storage.black_box.black_box import BlackBox
 from shared.clock import ManualClock

@@ -9,7 +9,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.descriptions import unit_sensor
 from edge.sample_codec.listener import RawStreamListener
 from edge.samples import SensorDescription
 from edge.sources.bus import BusSource

@@ -9,13 +9,8 @@ import msgspec
 import numpy as np
 
 from edge.clocks.timeline import Timeline
-from edge.sample_codec.codec import (
-    SampleEncoder,
-    batch_of,
-    described_unit,
-    sensors_of,
-    unit_sensor,
-)
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.descriptions import described_unit, sensors_of, unit_sensor
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import ImuBatch, SensorBatch, SensorDescription
 from edge.sources.black_box import BlackBoxSource

@@ -14,7 +14,8 @@ import pytest
 
 from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
-from edge.sample_codec.codec import SampleEncoder, batch_of, sensors_of, unit_sensor
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.descriptions import sensors_of, unit_sensor
 from edge.samples import ButtonPress, ImuBatch, SensorBatch
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.interface import Source

@@ -1,0 +1,42 @@
+"""People and markers of other systems that wait for the engine."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from typing import Final
+
+from base_station.engine.write_ahead import WriteAhead
+from shared.channels import EXTERNAL
+from shared.codec import encode
+from shared.header_factory import HeaderFactory
+from shared.messages import STATION_ID, ExternalMarker, ExternalMarkers
+
+_KEY: Final = EXTERNAL.key(STATION_ID)
+_WAITING_MAX: Final = 20  # batches of other systems, of a second each
+
+log = logging.getLogger(__name__)
+
+
+class ExternalQueue:
+    """``put`` from any thread; ``apply_waiting`` in the engine's."""
+
+    def __init__(self, write_ahead: WriteAhead, header_factory: HeaderFactory) -> None:
+        self._write_ahead = write_ahead
+        self._header_factory = header_factory
+        self._waiting: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
+            maxlen=_WAITING_MAX
+        )
+
+    def put(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
+        """Queue markers and the ids of those that are gone; a full queue drops its oldest batch."""
+        if len(self._waiting) == _WAITING_MAX:
+            log.warning("other systems send markers faster than they are taken: some are left out")
+        self._waiting.append((markers, removed))
+
+    def apply_waiting(self, not_before_ns: int) -> None:
+        """Log and apply the waiting batches, none of them earlier than ``not_before_ns``."""
+        for _ in range(len(self._waiting)):
+            message = ExternalMarkers(self._header_factory.header(), *self._waiting.popleft())
+            t_ns = max(message.header.t_utc_ns, not_before_ns)
+            self._write_ahead.append_and_apply(t_ns, _KEY, encode(message))
