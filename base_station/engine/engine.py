@@ -100,7 +100,7 @@ class StationEngine:
         self._actions = ActionQueue(pipeline, self._write_ahead, self._header_factory)
         self._deliveries = DeliveryQueue(pipeline, ports.log, ports.clock)
         self._lost: deque[Lost] = deque()
-        self._external = ExternalQueue(self._write_ahead, self._header_factory)
+        self._external = ExternalQueue(self._write_ahead.append_and_apply, self._header_factory)
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._unlinked: frozenset[str] = frozenset()  # as reported last
         self._receives_first = False

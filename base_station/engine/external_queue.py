@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from collections.abc import Callable
 from typing import Final
 
-from base_station.engine.write_ahead import WriteAhead
 from shared.channels import EXTERNAL
 from shared.codec import encode
 from shared.header_factory import HeaderFactory
@@ -21,8 +21,11 @@ log = logging.getLogger(__name__)
 class ExternalQueue:
     """``put`` from any thread; ``apply_waiting`` in the engine's."""
 
-    def __init__(self, write_ahead: WriteAhead, header_factory: HeaderFactory) -> None:
-        self._write_ahead = write_ahead
+    def __init__(
+        self, append_and_apply: Callable[[int, str, bytes], object], header_factory: HeaderFactory
+    ) -> None:
+        """``append_and_apply``: logs a record of a time and key, then applies it."""
+        self._append_and_apply = append_and_apply
         self._header_factory = header_factory
         self._waiting: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
             maxlen=_WAITING_MAX
@@ -39,4 +42,4 @@ class ExternalQueue:
         for _ in range(len(self._waiting)):
             message = ExternalMarkers(self._header_factory.header(), *self._waiting.popleft())
             t_ns = max(message.header.t_utc_ns, not_before_ns)
-            self._write_ahead.append_and_apply(t_ns, _KEY, encode(message))
+            self._append_and_apply(t_ns, _KEY, encode(message))

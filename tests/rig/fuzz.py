@@ -9,11 +9,11 @@ from functools import cache
 from typing import Any, TypeVar
 
 from google.protobuf.descriptor import Descriptor, FieldDescriptor
-from shared.messages.muster.v1.header_pb2 import AnyMessage
 
 from shared.channels import Channel
 from shared.codec import WIRE_TYPES
 from shared.messages import SCHEMA_REVISION
+from shared.messages.muster.v1.header_pb2 import AnyMessage
 
 # None: any other of the type.
 _INTEGERS = (None, -1, 0, 1, 2, 7, 100, 35_999, 2**31 - 1, 2**32 - 1, 2**63 - 1)
