@@ -1,6 +1,6 @@
 """Erasure of people: the units that they wore, with times, and their names.
 
-Found in the log alone, which knows it even where the database was lost.  Pure.
+Both are found in the log alone, because the database may be lost.  Pure.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from shared.messages.station import (
 FOREVER_NS = 2**63 - 1
 _OWN_ID = re.compile(r"[0-9a-f]{16}-\d+")  # of an action without an id
 Record = tuple[int, str, bytes]  # station time, key, payload
-# These hold places of people.
+# Actions with places of people.
 PLACE_ACTIONS = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
 TEXT_ACTIONS = frozenset({"SendCommand", "ResolveAlarm"})  # texts to people, or about them
 
@@ -95,7 +95,7 @@ class Erasure(msgspec.Struct, frozen=True):
         return frozenset(one.unit_id for one in self.wearings)
 
     def inserted_in(self, records: Iterable[Record]) -> frozenset[str]:
-        """Ids of those that a part of the log has already."""
+        """Ids of the inserted actions that a part of the log has already."""
         if not (self.hand_backs or self.reassignments):
             return frozenset()
         inserted_ids = {one.inserted_id for one in self.hand_backs}
@@ -109,13 +109,13 @@ class Erasure(msgspec.Struct, frozen=True):
         )
 
     def may_cover(self, unit_id: str, t_ns: int) -> bool:
-        """True where a message of this unit, logged at that time and of an unknown earlier one, may
-        have to be erased.
+        """True where a message of this unit that was captured at an unknown time, and logged at
+        ``t_ns``, may have to be erased.
         """
         return any(one.unit_id == unit_id and one.from_ns <= t_ns for one in self.wearings)
 
     def is_shown(self, t_ns: int) -> bool:
-        """True where a console may have shown where somebody was: with the trail that stays until
+        """True where a console may have shown the position of an erased person: trails stay until
         the next incident is opened.
         """
         return any(
@@ -126,16 +126,16 @@ class Erasure(msgspec.Struct, frozen=True):
         return next((one for one in self.openings_ns if one >= t_ns), FOREVER_NS)
 
     def people_at(self, t_ns: int) -> frozenset[str]:
-        """People whose references go from what was written at that time: all of the incident while
-        it is open, but for those who are elsewhere then.
+        """People whose references are removed from records of that time: all in the incident while
+        it is open, except those who are outside it then.
         """
         if not self.from_ns <= t_ns < self.until_ns:
             return frozenset()
         return self.person_ids - {one.person_id for one in self._elsewhere_at(t_ns)}
 
     def people_in_alarm(self, unit_id: str, raised_ns: int) -> frozenset[str]:
-        """People whose references go from an alarm: it may be of what the unit could not say before
-        it came elsewhere, about who wore it in the incident, and does not wear it there.
+        """People whose references are removed from an alarm.  A unit may report late, when it has
+        left the incident: the alarm is then about its wearer in the incident.
         """
         if not self.is_about(unit_id, raised_ns):
             return frozenset()
@@ -149,8 +149,8 @@ class Erasure(msgspec.Struct, frozen=True):
         return (one for one in self.elsewhere if one.from_ns <= t_ns < one.until_ns)
 
     def times_alone(self, erased_ids: Collection[str]) -> list[tuple[int, int]]:
-        """Times, begin and end, in which no other incident was open beside it, but for those that
-        are erased already.
+        """Times, begin and end, in which no other incident was open; incidents of ``erased_ids`` do
+        not count.
         """
         times_ns, from_ns = list[tuple[int, int]](), self.from_ns
         for one in sorted(self.others, key=lambda other: other.from_ns):
@@ -162,24 +162,24 @@ class Erasure(msgspec.Struct, frozen=True):
         return [(begin_ns, end_ns) for begin_ns, end_ns in times_ns if begin_ns < end_ns]
 
     def is_about(self, unit_id: str, raised_ns: int) -> bool:
-        """True if an alarm may name who is to be forgotten: also where it was raised when an
-        incident was over, of what a unit could not say before.
+        """True if an alarm may name an erased person: also one that was raised after the incident,
+        by a late report of a unit.
         """
         until_ns = self.about_until_ns if unit_id in self.unit_ids else self.until_ns
         return self.from_ns <= raised_ns < until_ns
 
     def covers_alarm(self, alarm_id: str) -> bool:
-        """True if an alarm is about who wore the unit then."""
+        """True if an alarm is about an erased wearer of the unit."""
         raised = raised_of(alarm_id)
         return raised is not None and self.covers(*raised)
 
     def is_of(self, person_ids: Iterable[str], t_ns: int) -> bool:
-        """True if anybody of these is to be forgotten, in what was written at that time."""
+        """True if one of these people is erased from records of that time."""
         return not {self.person_id, *self.people_at(t_ns)}.isdisjoint({*person_ids} - {""})
 
     def covers_separate_action(self, t_ns: int, apart: DoneApart) -> bool:
-        """True if what was done apart, and written down at ``t_ns``, says where somebody was, or
-        wore something, who is to be forgotten.  Of which time a place is, is one of its numbers.
+        """True if an action of a separated station, logged at ``t_ns``, has a place, a text or an
+        assignment of an erased person.  The time of a place is one of the numbers in its text.
         """
         kind, *values = re.split(r"[\s,]+", apart.what)
         if kind == "Assign":
@@ -197,8 +197,8 @@ class Erasure(msgspec.Struct, frozen=True):
 
 
 def raised_of(alarm_id: str) -> tuple[str, int] | None:
-    """Unit of an alarm and when it was raised, of one whose id is all that is known
-    (``core.alarms.alarm_manager``); None: it is of another program.
+    """Unit of an alarm and time when it was raised, both read from its id
+    (``core.alarms.alarm_manager``); None: another program made the id.
     """
     _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
     return (unit_id, int(raised_ns)) if raised_ns.isdecimal() else None
@@ -220,8 +220,10 @@ def is_inserted(done: OperatorAction) -> bool:
 def erasure_of_person(
     records: Iterable[Record], person_id: str, names: Collection[str], until_ns: int
 ) -> Erasure:
-    """``records``: the operators' actions of the whole log; ``names``: as the database has them,
-    for a log of an earlier version.
+    """Return the erasure of a person.
+
+    ``records``: the operators' actions of the whole log.  ``names``: from the database, for a log
+    of an earlier version.
     """
     names = {*names}
     since: dict[str, int] = {}  # by unit, while the person wears it
@@ -257,30 +259,28 @@ def erasure_of_person(
 
 
 class CaptureClocks:
-    """Capture times of messages by the station's clock.  The least delayed message that came live
-    bounds the clock of a run; of a run of which nothing came live the unit itself, if it knew the
-    station's time.
+    """Capture times of messages by the station's clock.
 
-    A record is placed by what stands before it in the log, and by nothing behind it.  So two
-    stations place it in the same way wherever each of them ends, though one has records behind it
-    that the other never gets.
+    The live message with the least delay gives the clock offset of a unit's run.  A run without
+    live messages has the unit's own UTC, if the unit knew it.
+
+    The time of a record depends only on the records before it in the log.  So two stations compute
+    the same time, though one of them has later records that the other never receives.
     """
 
     def __init__(self) -> None:
         self._offsets_ns: dict[tuple[str, int], int] = {}
 
     def note(self, t_ns: int, header: Header) -> None:
-        """Note a message that came live, in the order of the log.  What was erased has left a
-        heartbeat with the same header, so an erasure that is done again places all as before.
+        """Note a live message, in the order of the log.  An erased message has left a heartbeat
+        with the same header, so a repeated erasure computes the same times.
         """
         run = header.unit_id, header.boot_id
         offset_ns = t_ns - header.t_mono_ns
         self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
 
     def captured_ns(self, t_ns: int, header: Header) -> int | None:
-        """Time of a message that was logged at ``t_ns``, and not later than that; None where nobody
-        can tell.
-        """
+        """Capture time of a message that was logged at ``t_ns``, at most ``t_ns``; None: unknown."""
         offset_ns = self._offsets_ns.get((header.unit_id, header.boot_id))
         if offset_ns is not None:
             return min(header.t_mono_ns + offset_ns, t_ns)
@@ -295,5 +295,5 @@ def actions_of(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]
 
 
 def longest_first(names: Iterable[str]) -> tuple[str, ...]:
-    """Names that are none but spaces are left out."""
+    """Return the names, the longest first; blank ones are left out."""
     return tuple(sorted((one for one in names if one.strip()), key=lambda one: (-len(one), one)))

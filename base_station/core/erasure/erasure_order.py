@@ -1,8 +1,8 @@
 """Order of an erasure in the log that two stations share, and the part of the log before it.  Pure.
 
-Each station rewrites its log by itself, and at another moment.  Both rewrite the same records,
-because the order is one of them: events before it are judged, and events behind it stay as they
-are.  What a station derived from events is not shared, and is judged to the end of its log.
+Each station rewrites its own log, at its own time.  Both rewrite the same records, because the
+order is an event in the log: events before it are redacted, and events behind it stay as they are.
+Derived records are not shared between the stations, and are redacted to the end of the log.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ErasureOrder(NamedTuple):
 
 
 def orders_of(records: Iterable[Record]) -> Iterable[tuple[ErasureOrder, BeginErasure]]:
-    """The orders among records, with their subjects."""
+    """Yield the orders among records, with their subjects."""
     for t_ns, done in actions_of(records):
         if isinstance(done.action, BeginErasure):
             yield ErasureOrder(done.action_id, t_ns, done.by), done.action
@@ -60,7 +60,7 @@ class OrderedPart:
         self._is_behind = False
 
     def redacted(self, record: Record, redactor: Callable[[Record], list[Record]]) -> list[Record]:
-        """Records that stand in its place; an event behind the order stays."""
+        """Return the records that replace it; an event behind the order stays."""
         if self._is_behind and is_event(record[1]):
             return [record]
         if self._order is not None and _is_order(record, self._order):

@@ -1,13 +1,13 @@
-"""Scan of a log for the people of one incident: when each unit was in it, who wore it there, and
-what has to stand in the log so that others who were on the station replay as before.
+"""Scan of a log for one incident: membership and wearers of its units, and the actions that the
+erasure inserts so that units and people outside the incident replay as before.
 
-Units are in incidents by the rules of the live state (``base_station.core.people_actions``), which
-are stepped here with the operators' actions alone.  In the log that is left every unit is in the
-same incidents as before; in the erased one nobody wears it:
+Units join and leave incidents by the rules of the live state
+(``base_station.core.people_actions``), which are applied here to the operators' actions alone.  In
+the redacted log every unit is in the same incidents as before, without a wearer in the erased one:
 
-- before a unit comes into the incident it is unassigned, behind its leaving it is assigned again;
-- an assignment by which a unit comes into it is replaced by its coming alone;
-- assignments within the incident go.
+- a unit is unassigned before it joins the incident, and assigned again after it leaves;
+- an assignment by which a unit joins the incident is replaced by joining without a wearer;
+- assignments within the incident are removed.
 """
 
 from __future__ import annotations
@@ -45,10 +45,11 @@ def erasure_of_incident(
     *,
     is_whole: bool = True,
 ) -> Erasure:
-    """``records``: the operators' actions of the whole log; ``first_message_ns``: by unit, of those
-    that were heard before they were registered.  Where the log is not whole, a unit that it does
-    not register may have been registered in what is lost.  UserError where the incident is not
-    there or still open.
+    """Return the erasure of an incident.
+
+    ``records``: the operators' actions of the whole log.  ``first_message_ns``: by unit, of units
+    that sent messages before they were registered.  Where the log is not whole, the registration of
+    a unit may be lost.  UserError where the incident is unknown or still open.
     """
     actions = list(actions_of(records))
     registered = {one.action.unit_id for _, one in actions if isinstance(one.action, RegisterUnit)}
@@ -66,7 +67,7 @@ class _IncidentScan:
     def __init__(
         self, incident_id: str, lost: Collection[str], first_message_ns: Mapping[str, int]
     ) -> None:
-        """``lost``: units whose registration is lost: they are registered as they are named."""
+        """``lost``: units whose registration is lost; they are registered by their first action."""
         self._incident_id = incident_id
         self._lost = lost
         self._first_message = sorted((t_ns, unit_id) for unit_id, t_ns in first_message_ns.items())
@@ -158,7 +159,7 @@ class _IncidentScan:
         self._note_others(t_ns)
 
     def _note_first_message(self, t_ns: int) -> None:
-        """A unit that is heard while one incident is open is in that, registered or not."""
+        """Add units that sent messages before they were registered: they join the open incident."""
         while self._first_message and self._first_message[0][0] <= t_ns:
             received_ns, unit_id = self._first_message.pop(0)
             if unit_id in self._state.units:
@@ -175,7 +176,7 @@ class _IncidentScan:
             if unit_id in self._lost or isinstance(action, RegisterUnit):
                 self._register(unit_id)
         if isinstance(action, PeopleAction):
-            with suppress(UserError):  # it was refused then, too
+            with suppress(UserError):  # the live station refused it, too
                 list(apply_people_action(self._state, done.by, action))
 
     def _register(self, unit_id: str) -> None:
@@ -184,9 +185,7 @@ class _IncidentScan:
         unit.registered = True
 
     def _note_open(self, t_ns: int, done: OperatorAction) -> bool:
-        """Note when the incident is opened, closed and shown no more; True: it is opened by this
-        action.
-        """
+        """Note when the incident is opened, closed and no longer shown; True: this action opens it."""
         incident = self._state.incidents.get(self._incident_id)
         if self._opened_ns == FOREVER_NS:
             if incident is None:
@@ -200,14 +199,14 @@ class _IncidentScan:
         return False
 
     def _enter(self, unit_id: str, from_ns: int, done: OperatorAction, *, is_new: bool) -> None:
-        """``is_new``: nothing of the unit was there before the incident was opened."""
+        """``is_new``: the unit was not known before the incident was opened."""
         self._members_since[unit_id] = from_ns
         base_id = self._opening_id if is_new else done.action_id
         hand_back = HandBack(base_id, unit_id)
         self._hand_backs.append(hand_back)
         if isinstance(done.action, Assign) and not is_new:
             self._entries.append(done.action_id)
-        # An earlier erasure: the log has its units in no other record.
+        # Units of an earlier erasure: no other record of the log names them.
         of_opening = inserted_action_id(self._opening_id, unit_id)
         if not self._unassigned_ids.isdisjoint({hand_back.inserted_id, of_opening}):
             self._units.add(unit_id)
@@ -219,7 +218,7 @@ class _IncidentScan:
             return  # unworn, or the action itself names the person
         self._note_person(unit_id, person)
         is_closing = self._closed_ns == t_ns
-        again = f"{done.action_id}-again"  # the incident to which it comes may be erased, too
+        again = f"{done.action_id}-again"  # the next incident of the unit may be erased, too
         self._reassignments.append(
             Reassignment(
                 done.action_id,
@@ -229,7 +228,7 @@ class _IncidentScan:
         )
 
     def _assigned(self, action_id: str, assign: Assign, worn: Mapping[str, Person]) -> None:
-        """Note the unit outside of the incident that a member gives back by a new assignment."""
+        """Note units outside the incident whose wearer is assigned a unit inside it."""
         if assign.unit_id not in self._members_since:
             return
         for unit_id, person in worn.items():
@@ -254,8 +253,8 @@ class _IncidentScan:
             self._away_since.setdefault(key, t_ns)
 
     def _away(self, members: set[str]) -> dict[tuple[str, str], str]:
-        """Wearers of units outside the incident, each with the unit; once it is closed, those in
-        another one.
+        """Wearers of units outside the incident, each with the unit; after its closing only those
+        in another incident.
         """
         is_closed = self._closed_ns < FOREVER_NS
         return {
@@ -289,7 +288,7 @@ class _IncidentScan:
 
 
 def _units_of(done: OperatorAction) -> tuple[str, ...]:
-    """Units that an action brings somewhere, or gives to somebody."""
+    """Units that an action registers, assigns, or moves to an incident."""
     match done.action:
         case RegisterUnit(unit_id=unit_id) | Assign(unit_id=unit_id):
             return (unit_id,)

@@ -1,8 +1,8 @@
 """Names in what earlier versions recorded, taken out by regular expressions.
 
-Only for logs of earlier versions, and for the tables made from them: there a name stands in the
-assignment of a unit and in any text.  What this version records has person ids
-(``base_station.core.person_references``), and of that nothing is changed here.
+Only for logs of earlier versions, and for the tables made from them: they have a name in the
+assignment of a unit and in any text.  Records of this version have person ids
+(``base_station.core.person_references``) and are not changed here.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ _PROGRAM_FIELDS = frozenset(
 
 
 def has_names(actions: Iterable[OperatorAction]) -> bool:
-    """True where a log was written, in part at least, by an earlier version."""
+    """True where an earlier version wrote at least a part of the log."""
     return any(isinstance(one.action, Assign) and one.action.person_name for one in actions)
 
 
 class OlderNames:
-    """The names of whom is to be forgotten; none where the log is of this version."""
+    """Names of the erased people; none where the log is of this version."""
 
     def __init__(self, names: Iterable[str]) -> None:
         known = tuple(names)
@@ -39,15 +39,15 @@ class OlderNames:
         self._letters = re.compile(letters, re.IGNORECASE)
 
     def may_be_in(self, payload: bytes) -> bool:
-        """In bytes nothing tells where a word begins."""
+        """True if the bytes have a name; beginnings of words cannot be found in bytes."""
         return self._letters.search(payload.decode("utf-8", "replace")) is not None
 
     def erased(self, text: str) -> str:
         return self._pattern.sub(ERASED_TEXT, text)
 
     def erased_in_json(self, detail: str) -> str:
-        """Erase names in an entry of the audit: in JSON a quotation mark within one is written in
-        another way, and a field may be called like a person.
+        """Erase names in an audit entry.  It is decoded first: JSON escapes quotation marks within
+        names, and names of fields must stay.
         """
         try:
             entry = msgspec.json.decode(detail)
@@ -74,5 +74,5 @@ class OlderNames:
 
 
 def is_program_text(field: str) -> bool:
-    """True if what is in a field of this name is what the program goes by, and nobody's name."""
+    """True if the program reads fields of this name; they hold no name of a person."""
     return field in _PROGRAM_FIELDS or field.endswith(("_id", "_ids"))

@@ -1,9 +1,9 @@
-"""Takes what is to be forgotten out of a log, record by record.  Pure.
+"""Redaction of a log, record by record: removes the data of an erased person or incident.  Pure.
 
-What a unit said while somebody wore it who is to be forgotten becomes a bare sign of life with the
-same header: that a message came is kept, so that a station does not fetch it from the unit's
-journal again, and nothing of what it said.  Words to them and about them become ``(forgotten)``,
-found by where they stand; names are in logs of earlier versions only (``names_in_older_logs``).
+A unit's message from a time that is erased becomes a heartbeat with the same header and nothing
+else: the message does not count as missing, so no station fetches it from the unit's journal again.
+Texts to and about an erased person become ``(forgotten)``; they are found by their field.  Names
+are in logs of earlier versions only (``names_in_older_logs``).
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ from shared.messages.station import (
 
 
 class Redactor:
-    """Call it with every record of the log, in order; gives what is to stand in its place."""
+    """Call it with every record of the log, in order; it returns the records that replace it."""
 
     def __init__(
         self,
@@ -66,8 +66,8 @@ class Redactor:
         clocks: CaptureClocks,
         inserted_ids: frozenset[str] = frozenset(),
     ) -> None:
-        """``clocks``: of the records before.  ``inserted_ids``: of the erasure's own actions, those
-        that this part of the log has.
+        """``clocks``: of the records before.  ``inserted_ids``: ids of the actions that the erasure
+        inserts and that this part of the log has already.
         """
         self._erasure = erasure
         self._clocks = clocks
@@ -88,9 +88,9 @@ class Redactor:
         return self._received(record, event)
 
     def _unread(self, record: Record, event: Rejected) -> list[Record]:
-        """Nobody knows what is in it.  Of what may be of somebody who is to be forgotten, a sign of
-        life is left, so that it is not missing and fetched again; out of a journal, nobody can tell
-        when it was said.
+        """Redact a record that cannot be read.  Where it may be from an erased time, a heartbeat
+        replaces it, so that it is not fetched again.  The capture time of a record from a journal
+        is unknown.
         """
         t_ns, key, payload = record
         if event.number is None:
@@ -119,7 +119,7 @@ class Redactor:
                 return [self._renamed(record)]
 
     def _is_of_others(self, key: str) -> bool:
-        """True if it comes from a unit that nobody wore who is to be forgotten."""
+        """True if it comes from a unit that no erased person wore."""
         try:
             unit_id, channel = parse_key(key)
         except UnknownChannelError:
@@ -128,8 +128,8 @@ class Redactor:
         return channel.direction is Direction.UP and wearer not in self._unit_ids
 
     def _unit(self, record: Record, event: Received) -> Record:
-        """A unit's message, or the sign of life that is left of it; out of a journal, where nobody
-        can tell when it was said, that too.
+        """Return a unit's message, or the heartbeat that replaces it where it is from an erased
+        time, or comes from a journal and may be from one.
         """
         t_ns, key, _ = record
         sender, channel = parse_key(key)
@@ -152,7 +152,7 @@ class Redactor:
         return t_ns, alive, encode(Heartbeat(header, 0, 0))
 
     def _acted(self, record: Record, message: OperatorAction) -> Record:
-        """With the names replaced in what somebody did; of an alarm, as in the alarm, too."""
+        """Replace the names in an action; in one about an alarm also those of the alarm."""
         action = message.action
         raised = raised_of(action.alarm_id) if isinstance(action, ResolveAlarm) else None
         if raised is None or not self._erasure.is_about(*raised):
@@ -176,8 +176,8 @@ class Redactor:
         return t_ns, key, encode(erased)
 
     def _derived(self, record: Record) -> list[Record]:
-        """Records that only repeat others.  What consoles were shown is taken out whole: a replay
-        decides it again, of what is left.
+        """Redact a record that is computed from others.  One of the console's picture is removed
+        whole: a replay computes it again from the records that are left.
         """
         t_ns, key, payload = record
         if is_console(key):
@@ -199,7 +199,7 @@ class Redactor:
         return records
 
     def _in_incident(self, t_ns: int, message: OperatorAction) -> list[OperatorAction]:
-        """Nobody wears a unit in the incident; outside they wear what they did."""
+        """Remove the wearers of units in the incident; outside it they stay."""
         before = [
             msgspec.structs.replace(
                 message, action_id=one.inserted_id, action=Unassign(one.unit_id)
@@ -237,7 +237,7 @@ class Redactor:
         return message if kept is message.action else msgspec.structs.replace(message, action=kept)
 
     def _without_places(self, t_ns: int, message: OperatorAction) -> OperatorAction | None:
-        """None where all that it says is where somebody was who is to be forgotten."""
+        """Remove the places of erased people; None where nothing else is in the action."""
         action, covers = message.action, self._erasure.covers
         match action:
             case SetStart(unit_id=unit_id):
@@ -264,8 +264,8 @@ class Redactor:
                 return message
 
     def _renamed(self, record: Record, people: Collection[str] | None = None) -> Record:
-        """With every name replaced, or reference to one in the incident, wherever it stands; who
-        did something stays.  ``people``: whose references go; None: as of the record's time.
+        """Replace every name, and every reference to ``people``, in all texts; the author of an
+        action stays.  ``people`` is None: those who are erased at the record's time.
         """
         t_ns, key, payload = record
         if people is None:
@@ -284,7 +284,7 @@ class Redactor:
         return t_ns, key, wire.SerializeToString()
 
     def _mentions(self, payload: bytes) -> bool:
-        """Anybody who is to be forgotten, or perhaps."""
+        """True if the bytes may mention an erased person."""
         known = any(reference in payload for reference in self._references)
         return known or self._older.may_be_in(payload)
 
@@ -293,8 +293,8 @@ class Redactor:
 
 
 def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
-    """The action without what was written to somebody or about them, and of an incident without
-    whom it was for; the same one where nothing has to go.
+    """Return the action without texts to or about erased people, and without their references as
+    recipients in the incident; the same object where nothing changes.
     """
     match action:
         case Assign(person_id=erasure.person_id, person_name=name) if name:
@@ -326,19 +326,19 @@ def _order_without(order: SendCommand, t_ns: int, erasure: Erasure) -> SendComma
 
 
 def _others(person_ids: tuple[str, ...], t_ns: int, erasure: Erasure) -> tuple[str, ...]:
-    """Those who are not to be forgotten, or are elsewhere at that time."""
+    """People who are not erased, or are outside the incident at that time."""
     gone = erasure.people_at(t_ns)
     return tuple(one for one in person_ids if one not in gone)
 
 
 def without_note(by: str) -> str:
-    """Name of who resolved an alarm, without the note that stands behind it in older logs."""
+    """Name of the person who resolved an alarm, without the note that follows it in older logs."""
     resolver, noted, _ = by.partition(": ")
     return f"{resolver}{noted}{ERASED_TEXT}" if noted else by
 
 
 def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNames) -> str:
-    """Text of what was done apart and written down at ``t_ns``, without what is forgotten."""
+    """Text of an action of a separated station, logged at ``t_ns``, without erased data."""
     if erasure.covers_separate_action(t_ns, apart):
         return ERASED_TEXT
     times_ns = (t_ns, apart.t_ns)
@@ -349,7 +349,7 @@ def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNa
 
 
 def _change_texts(wire: WireMessage, change: Callable[[str], str]) -> None:
-    """Change every text of a message and of what is in it, but for what the program goes by."""
+    """Change every text of a message and its parts, except those that the program reads."""
     for field, value in wire.ListFields():
         if is_program_text(field.name):
             continue
