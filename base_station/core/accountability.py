@@ -1,8 +1,8 @@
 """Accountability (PAR) and working time of members.
 
-While an incident is open, each wearer of a unit is to be confirmed again and again: by the button
-of the own unit, or by radio, which an operator enters at the console.  Assigning a unit or opening
-an incident confirms no member, and neither does any measurement.
+While an incident is open, each wearer of a unit must be confirmed at regular intervals: by the
+button of the own unit, or by radio, which an operator enters at the console.  Assigning a unit or
+opening an incident confirms no member, and neither does any measurement.
 """
 
 from __future__ import annotations
@@ -71,14 +71,14 @@ def end(state: StationState, unit: UnitState) -> None:
 
 
 def continue_duty(state: StationState, unit: UnitState, duty: Duty, before: Duty) -> None:
-    """Work and rest of a duty go on in the next one, which another incident has begun."""
+    """Carry work and rest of a duty over into the next one, which another incident has begun."""
     duty.ready_ns, duty.rest_since_ns = before.ready_ns, before.rest_since_ns
     duty.work_since_ns = before.work_since_ns
     _update_due(state, unit, duty)
 
 
 def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
-    """PARs confirmed by radio.  UserError where nobody is on duty."""
+    """Record PARs confirmed by radio.  UserError where no recipient is on duty."""
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
         raise UserError(
             coded(
@@ -119,12 +119,12 @@ def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
 
 
 def undo(state: StationState, action: UndoConfirmation) -> list[UnitState]:
-    """Take back radio confirmations with this id; gives the units concerned."""
+    """Undo the radio confirmations with this id; returns the units concerned."""
     return [unit for unit in state.units.values() if _is_undone(state, unit, action)]
 
 
 def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
-    """After a PAR request or an evacuation: the PAR of each recipient is due soon."""
+    """Make the PAR of each recipient due soon, after a PAR request or an evacuation."""
     if command.kind not in PAR_REQUESTS:
         return
     for unit_id in command.deliveries:
@@ -156,7 +156,7 @@ def record_answer(
 
 
 def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
-    """Send the wearer to rest, or back to work.  UserError where that is so already."""
+    """Send the wearer to rest, or back to work.  UserError where the wearer is there already."""
     duty = unit.duty
     if duty is None:
         raise UserError(

@@ -1,4 +1,4 @@
-"""Checkpoint of a pipeline: encoding and decoding of all that it keeps."""
+"""Checkpoint of a pipeline: encoding and decoding of its whole state."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ class Checkpoint(msgspec.Struct, frozen=True):
 
 
 def read_checkpoint(saved: bytes) -> Checkpoint | None:
-    """Decode a checkpoint; None for one of another version: the log has all that matters."""
+    """Decode a checkpoint; None for one of another version: the log is then applied from its
+    beginning.
+    """
     try:
         return msgspec.msgpack.decode(saved, type=Checkpoint)
     except (msgspec.MsgspecError, UnicodeDecodeError):

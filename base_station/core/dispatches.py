@@ -1,7 +1,7 @@
 """Dispatches: reports of the dispatch centre, from which incidents are opened.
 
-A report never opens, renames or closes an incident: it is offered until it opens one or is
-dismissed, and from then on goes with the incident.
+A report never opens, renames or closes an incident: it is offered until an operator opens an
+incident from it or dismisses it, and then belongs to that incident.
 """
 
 from __future__ import annotations

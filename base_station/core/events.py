@@ -1,8 +1,7 @@
-"""Events that the pipeline steps, live or from a log, and the outputs of a step.
-
-A log record is ``(t_ns, key, payload)``; ``event_of`` makes the event of it.  Ticks and
-operators' actions are records under ``muster/v1/station/...`` like any other message, so that
-a log replays without knowing anything else.
+"""Events that the pipeline applies, live or from a log, and the outputs of a step.  A log record is
+``(t_ns, key, payload)``; ``event_of`` decodes it to an event.  Ticks and operators' actions are
+records under ``muster/v1/station/...`` like any other message, so that a log replays without other
+input.
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ class TrailBackfilled(msgspec.Struct, frozen=True):
 
 
 class PinsChanged(msgspec.Struct, frozen=True):
-    """Pins or beacons changed, and with them the past of these units."""
+    """Pins or beacons changed, and with them the paths of these units."""
 
     unit_ids: tuple[str, ...]
 
@@ -106,7 +105,7 @@ class Refused(msgspec.Struct, frozen=True):
     """Operator action without effect."""
 
     action_id: str
-    reason: str  # for that person
+    reason: str  # for the operator
 
 
 _DECISIONS = frozenset(channel.key(STATION_ID) for channel in (FUSED, ALARM))

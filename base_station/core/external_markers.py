@@ -1,7 +1,6 @@
 """External markers: people and markers of other teams, from other systems.
 
-They are shown beside our own and change nothing of them.  How many are kept is bounded, whatever
-another system sends.
+They are only shown, and change nothing of our own units.  Their number is bounded.
 """
 
 from __future__ import annotations
@@ -10,8 +9,8 @@ from base_station.core.state import StationState
 from shared.clock import NS_PER_S
 from shared.messages import ExternalMarkers
 
-MARKERS_KEPT = 300  # of each source: a flood of one leaves those of the others
-OLD_FOR_NS = 600 * NS_PER_S  # so long one is shown as old; then it is not shown any more
+MARKERS_KEPT = 300  # of each source, so that one source cannot displace the others'
+OLD_FOR_NS = 600 * NS_PER_S  # a marker is shown as old for this time, then dropped
 
 
 def apply(state: StationState, message: ExternalMarkers) -> bool:
@@ -38,7 +37,7 @@ def _drop_oldest(state: StationState, source: str) -> None:
 
 
 def expire(state: StationState) -> bool:
-    """Drop those that have been old for long; True where one was dropped."""
+    """Drop markers that have not been updated for long; True where one was dropped."""
     over = [
         one.marker_id for one in state.external.values() if state.t_ns - one.stale_ns > OLD_FOR_NS
     ]

@@ -25,20 +25,21 @@ _ACTION_ID = re.compile(rf"({_DIGEST})\.({_DIGEST})\.{_DIGEST}")
 
 
 def idempotent_action_id(by: str, key: str, request: bytes, own: str) -> str:
-    """For an action: with the same key, the same person asks for the same thing again.  ``own``:
-    32 hexadecimal digits, other ones for every action, however old a key is that comes again.
+    """Return the id of an action, which begins with digests of person and key, and of the request.
+    ``own``: 32 hexadecimal digits that differ for every action, so that an id is unique even with
+    an old key.
     """
     return f"{_digest(f'{by} {key}'.encode())}.{_keyed_digest(by, key, request)}.{own}"
 
 
 def row_id(by: str, key: str, request: bytes) -> str:
-    """Row id for a row that is no action: its first ``KEY_DIGITS`` are those of the key."""
+    """Return the id of a row that is no action: its first ``KEY_DIGITS`` are those of the key."""
     of_key = _digest(f"{by} {key}".encode())
     return of_key[:KEY_DIGITS] + _keyed_digest(by, key, request)[:KEY_DIGITS]
 
 
 def audit_entry_prefixes(by: str, key: str) -> tuple[str, str]:
-    """Beginnings of the ids of audit entries of a user's key: of an action, or of a row."""
+    """Return the prefixes of audit entry ids of a user's key: of an action, and of a row."""
     digest = _digest(f"{by} {key}".encode())
     return f"{digest}.", f"added-{digest[:KEY_DIGITS]}"
 
@@ -91,7 +92,7 @@ def created_id_of(action: Action) -> str:
 
 
 def _key_of(action_id: str) -> str:
-    """Empty: the action came without a key."""
+    """Return the key in an action's id; empty: it came without one."""
     telling = _ACTION_ID.fullmatch(action_id)
     return "" if telling is None else telling[1]
 

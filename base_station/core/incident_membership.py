@@ -41,7 +41,7 @@ def assign(state: StationState, action: AssignIncident) -> Iterator[UnitState]:
 
 
 def enter(state: StationState, units: Iterable[UnitState], incident: Incident) -> None:
-    """Bring units into an incident that was opened now: everything is counted anew."""
+    """Put units into an incident that was just opened: all counts restart."""
     for unit in units:
         unit.incident_id = incident.incident_id
         _restart(unit)
@@ -51,8 +51,8 @@ def enter(state: StationState, units: Iterable[UnitState], incident: Incident) -
 
 
 def move(state: StationState, unit: UnitState, incident: Incident) -> None:
-    """Bring a unit from another incident, or from none.  Its wearer's PAR is not confirmed there
-    yet; heat, work and rest are of the person, and go on.
+    """Move a unit from another incident, or from none.  Its wearer's PAR is not confirmed there
+    yet; heat, work and rest belong to the person and continue.
     """
     before = unit.duty
     accountability.end(state, unit)
@@ -72,8 +72,9 @@ def leave(state: StationState, unit: UnitState) -> None:
 def follow_person(
     state: StationState, unit: UnitState, came_from: Incident | None, duty: Duty | None
 ) -> None:
-    """Bring the unit that a person has put on into the incident from which the person comes; else
-    it stays in its own, or joins the only open one.  ``duty``: of the person, with another unit.
+    """Move the unit that a person has put on into the person's incident.  A person without an
+    incident stays in the unit's, or joins the only open one.  ``duty``: of the person, with another
+    unit.
     """
     opened = state.open_incidents
     only = opened[0] if len(opened) == 1 else None

@@ -1,4 +1,4 @@
-"""Places in a log, which two stations share record by record."""
+"""Positions in a log, which are the same on both stations of a pair."""
 
 from __future__ import annotations
 
@@ -12,17 +12,15 @@ Record = tuple[int, str, bytes]  # station time, key, payload
 
 
 class LogPosition(NamedTuple):
-    """Behind an event: its time, and how many events had that time so far.
-
-    Only events count.  Decisions of a station follow from them, and are made again when they are
-    stepped.
+    """Position behind an event: its time, and the number of events so far with that time.  Only
+    events count: a station's decisions are computed from them again.
     """
 
     t_ns: int
     events: int
 
     def next(self, t_ns: int) -> LogPosition:
-        """Behind the next event, of that time."""
+        """Return the position behind the next event, which has that time."""
         return LogPosition(t_ns, self.events + 1 if t_ns == self.t_ns else 1)
 
 
@@ -34,7 +32,7 @@ def is_event(key: str) -> bool:
 
 
 def events_after(place: LogPosition, records: Iterable[Record]) -> Iterator[Record]:
-    """The events behind a place, of records that begin with its time or earlier."""
+    """Yield the events behind a position, of records that begin at its time or earlier."""
     here = START
     for record in records:
         if is_event(record[1]):

@@ -97,7 +97,7 @@ class ActionHandler:
             case ReportProblem() | SetThresholds() | SetFuser():
                 changes = self._station_action(state, action)
             case DoneApart() | ImportFile() | RemoveImport():
-                changes = ()  # the log and the tables have it
+                changes = ()  # only for the log and the tables
             case RegisterUnit() | SetStart():
                 changes = self._unit(state, action)
             case SetAnchor() | SetPlan() | SetReference():

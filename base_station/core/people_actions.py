@@ -107,7 +107,7 @@ def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
 
 
 def _end_before(state: StationState, site_id: str, *, is_only: bool) -> list[UnitState]:
-    """Let go of the incidents that were closed on this site, or of all; gives who was in them."""
+    """Drop the closed incidents of this site, or of all; returns the units that were in them."""
     incidents = state.incidents.values()
     closed = [one for one in incidents if one.closed_ns is not None]
     over = {one.incident_id for one in closed if is_only or one.site_id == site_id}

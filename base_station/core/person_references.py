@@ -46,14 +46,14 @@ def reference_to(person_id: str) -> str:
 
 
 def with_names(text: str, name_of: Callable[[str], str]) -> str:
-    """The text as it is shown; ``name_of``: the name for a person id."""
+    """Return the text as it is shown; ``name_of``: the name for a person id."""
     if _BEGIN not in text:  # nearly always
         return text
     return _REFERENCE.sub(lambda found: name_of(found[1]), text)
 
 
 def references_in(text: str) -> set[str]:
-    """Ids of the people whom a text mentions."""
+    """Return the ids of the people in a text."""
     return set(_REFERENCE.findall(text))
 
 
@@ -80,7 +80,7 @@ def name_pattern(names: Collection[str]) -> re.Pattern[str]:
 
 
 def with_references(action: Action, ids_by_name: Mapping[str, str]) -> Action:
-    """The action with references in its free text, in the place of names of the roster."""
+    """Return the action with names of the roster in its free text replaced by references."""
     field = FREE_TEXTS.get(type(action))
     text = getattr(action, field) if field else ""
     if not text or not ids_by_name:

@@ -77,8 +77,8 @@ class StationPipeline:
         plans: PlanReader | None = None,
         make_alarms: Callable[[Sequence[AlarmRule]], AlarmManager] = AlarmManager,
     ) -> None:
-        """``fuser_kind``: until the log names another; ``plans``: a reader that has read them
-        before; ``make_alarms``: for a caller that also judges by other thresholds.
+        """``fuser_kind``: until the log has another; ``plans``: a reader that may have parsed the
+        plans already; ``make_alarms``: for a caller that also judges by other thresholds.
         """
         self.state = checkpoint.state if checkpoint is not None else StationState()
         fuser_kind = fuser_named(self.state.fuser) or fuser_kind
@@ -86,7 +86,7 @@ class StationPipeline:
         plans = plans or PlanReader()
         for site in self.state.sites.values():
             plan = site.plan
-            if plan is not None and not plan.read_whole:  # by another version, which looked at less
+            if plan is not None and not plan.read_whole:  # another version read only a part of it
                 site.plan = plans.plan(plan.geojson)
         self._positioning = Positioning(
             fuser_kind,
@@ -103,7 +103,7 @@ class StationPipeline:
         self._actions = ActionHandler(self._alarms, self._positioning, plans)
 
     def checkpoint(self) -> bytes:
-        """To start again from here; ``read_checkpoint`` reads it."""
+        """Encode the whole state; ``read_checkpoint`` decodes it."""
         saved, pinned = self._positioning.save()
         return Checkpoint(self.state, self._positioning.fuser, saved, pinned).to_bytes()
 
@@ -142,7 +142,7 @@ class StationPipeline:
         return []
 
     def advance_time(self, t_ns: int) -> list[Output]:
-        """Let time go by of which nothing is recorded: links and places get older, and nothing is
+        """Advance the time without a recorded event: links and positions age, and nothing is
         decided.
         """
         self.state.t_ns = max(self.state.t_ns, t_ns)
@@ -206,7 +206,7 @@ class StationPipeline:
         return outputs
 
     def _incidents_changed(self, before: Mapping[str, str], action: Action) -> list[Output]:
-        """The incident that an action has opened, and which units it has brought where."""
+        """Return the incident that an action opened and the units that it moved, as events."""
         state, outputs = self.state, list[Output]()
         if isinstance(action, OpenIncident):
             site_id = state.incidents[action.incident_id].site_id

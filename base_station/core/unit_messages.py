@@ -1,6 +1,6 @@
 """Messages of units: the stages that each passes, from admission to the alarms.
 
-A tracking agent speaks for a unit that does not track: its messages pass the same stages. A
+A tracking agent sends messages for a unit that does not track itself: they pass the same stages. A
 position has stages of its own within ``apply`` (``positioning.FUSE``, ``positioning.LOCATE``).
 """
 
@@ -116,7 +116,7 @@ class UnitMessages:
         return True
 
     def review_alarms(self, update: MessageUpdate) -> bool:
-        """Let the alarm rules judge the unit that heed such a message."""
+        """Apply the alarm rules that are triggered by such a message."""
         state, kind = update.state, type(update.message)
         if self._alarms.has_rule_for(kind):
             alarms = self._alarms.review(state, update.unit, kind)
@@ -145,7 +145,7 @@ class UnitMessages:
     def _note_sighting(
         self, state: StationState, unit: UnitState, sighting: Sighting
     ) -> list[Output]:
-        """Its pin is solved at once, but one in a second at most: others wait, one unit a tick."""
+        """Solve its pin at once, at most one a second: others wait, one unit a tick."""
         changed = note_sighting(state, unit, sighting)
         if not changed:
             return []
@@ -180,8 +180,8 @@ def admit(update: MessageUpdate) -> bool:
 
 
 def order(update: MessageUpdate) -> bool:
-    """End repeats, and find out whether it is of now; nothing of an agent is a sign of life of the
-    unit.
+    """End repeated messages, and find out whether it is live.  An agent's message does not show
+    that the unit itself has contact.
     """
     event, header, t_ns = update.event, update.message.header, update.state.t_ns
     if event.backfilled:
@@ -228,7 +228,7 @@ def note_closed_incident(update: MessageUpdate) -> bool:
 
 
 def note_change(update: MessageUpdate) -> bool:
-    """Note that the consoles may show the unit otherwise."""
+    """Note that the consoles may have to show the unit differently."""
     unit = update.unit
     can_wait = type(update.message) in _DEFERRABLE and update.link_before == unit.link
     soon = update.is_of_agent or not can_wait

@@ -1,9 +1,8 @@
 """Alarm manager: raises, acknowledges and resolves alarms, and reports each transition.
 
-A rule judges; the manager decides on the alarm.  It keeps an alarm from flapping
-(evidence must stay clear for a time), never resolves one because time passed without messages, and
-keeps a latched one until a person resolves it.  A rule that fails is reported and the others
-go on.
+A rule judges a unit; the manager decides on the alarm.  It prevents flapping (evidence must stay
+clear for a time), never resolves an alarm because messages are missing, and keeps a latched one
+until a person resolves it.  A rule that fails is reported, and the others continue.
 """
 
 from __future__ import annotations
@@ -78,7 +77,7 @@ class AlarmManager:
                 verdict = rule.judge(unit, state.t_ns, level)
             except Exception as error:  # noqa: BLE001  # one bad rule must not silence the others
                 part = f"rule-{rule.name}"
-                if part not in state.problems:  # the same for every unit
+                if part not in state.problems:  # reported once for all units
                     text = coded(
                         "rule-failed",
                         "The alarm rule {rule!r} failed for {unit_id} and did not judge: {error}",
@@ -105,8 +104,8 @@ class AlarmManager:
         return bool(self._rules_by_message.get(came, self._rules))
 
     def report_problem(self, state: StationState, report: ReportProblem) -> Iterator[Alarm]:
-        """A part of the station itself fails, or fails in another way: a shorter text or other
-        numbers are no other way.  Without a text, it is well again.
+        """Report that a part of the station fails, or fails in another way; without a text, that it
+        works again.  A text that only is shorter or has other numbers is no other way.
         """
         part, text = report.part, report.text
         key = f"{STATION_RULE}|{part}"
@@ -125,7 +124,7 @@ class AlarmManager:
                 yield _resolve(state, standing, coded("over-works-again", "works again"))
 
     def acknowledge(self, state: StationState, by: str, action: AcknowledgeAlarm) -> Alarm | str:
-        """Acknowledge an alarm: gives it, or for a person the reason why it cannot be done."""
+        """Acknowledge an alarm; returns it, or the reason for a person why that is impossible."""
         alarm = _alarm_as_seen(state, action)
         if isinstance(alarm, str):
             return alarm
@@ -136,7 +135,7 @@ class AlarmManager:
         return alarm
 
     def resolve(self, state: StationState, by: str, action: ResolveAlarm) -> Alarm | str:
-        """Resolve an alarm: gives it, or for a person the reason why it cannot be done."""
+        """Resolve an alarm; returns it, or the reason for a person why that is impossible."""
         alarm = _alarm_as_seen(state, action)
         if isinstance(alarm, str):
             return alarm
@@ -256,7 +255,7 @@ def _same_subject(state: StationState, key: str, newest: Alarm, finding: Finding
 
 
 def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Finding) -> bool:
-    """True where the finding is another matter than the resolved alarm."""
+    """True if the finding is not about the condition of the resolved alarm."""
     is_others = finding.about != resolved.about and not finding.latched
     if is_others or not resolved.resolved_while_active or finding.onset_ns > resolved.changed_ns:
         return True
@@ -269,7 +268,9 @@ def _is_new(state: StationState, rule: AlarmRule, resolved: Alarm, finding: Find
 def _move_level(
     state: StationState, rule: AlarmRule, alarm: Alarm, finding: Finding
 ) -> Alarm | None:
-    """Worse at once, and to be acknowledged anew; better once the evidence stays so."""
+    """Raise the level at once, to be acknowledged again; lower it when the evidence has stayed
+    lower.
+    """
     alarm.clear_since_ns = None
     rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
     if rank == standing and _is_new_occurrence(alarm, finding):
@@ -340,7 +341,7 @@ def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
 
 
 def _alarm_as_seen(state: StationState, action: AcknowledgeAlarm | ResolveAlarm) -> Alarm | str:
-    """The open alarm, where it has not been raised anew since it was seen; for a person why not."""
+    """Return the open alarm; or the reason, where it was raised again since the user saw it."""
     alarms = (one for one in state.alarms.values() if one.alarm_id == action.alarm_id)
     alarm = next((one for one in alarms if one.is_open), None)
     if alarm is None:

@@ -1,4 +1,4 @@
-"""A unit's sensors were calibrated long ago, or badly: its tracker does worse than it could."""
+"""Alarm: a unit's sensors were calibrated long ago, or badly, so its tracker is less accurate."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _DAY_S = 86_400
 
 @dataclass(frozen=True, slots=True)
 class CalibrationPoor:
-    """A unit without any calibration is left alone: not every sensor needs one."""
+    """A unit without a calibration raises no alarm: not every sensor needs one."""
 
     old_after_days: Annotated[float, Within(1.0, 3650.0)] = 180.0
     name: str = "calibration"

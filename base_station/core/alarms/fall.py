@@ -1,4 +1,4 @@
-"""The unit detected a fall; an operator at the station has to find out how the wearer is."""
+"""Alarm: the unit detected a fall; an operator must find out how the wearer is."""
 
 from __future__ import annotations
 

@@ -56,7 +56,9 @@ class Heat:
         )
 
     def _level(self, ambient_degc: float, level: str) -> str:
-        """The worst level whose limit is reached; a level that stands is left a little below."""
+        """Return the worst level whose limit is reached; the present level is left a little below
+        its limit.
+        """
         limits = (self.caution_degc, self.warning_degc, self.critical_degc)
         standing = self.levels.index(level) if level else -1
         found = ""

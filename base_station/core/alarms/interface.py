@@ -22,7 +22,7 @@ class Finding(msgspec.Struct, frozen=True):
     code: str  # of its sentence, in ``sentences``
     parameters: AlarmParameters  # of the sentence
     seen_ns: int  # station time of the evidence
-    onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
+    onset_ns: int = 0  # beginning of the condition; one after a resolution is a new alarm
     latched: bool = False  # only a person resolves it
     about: int | str | None = None  # identity among several of one unit: the wearer, or the fault
     measured: float | None = None  # value that was judged, in the rule's unit; None: none
@@ -37,7 +37,7 @@ class Finding(msgspec.Struct, frozen=True):
 class Clear(msgspec.Struct, frozen=True):
     """There is evidence that nothing is the matter."""
 
-    seen_ns: int  # station time of the evidence: time passing without news clears nothing
+    seen_ns: int  # station time of the evidence: the passing of time alone clears nothing
     by: str  # cause of the resolution, with its code
     at_once: bool = False  # conclusive: the condition need not last
     about: int | None = None  # wearer that the evidence concerns, where that counts
@@ -80,8 +80,8 @@ class AlarmRule(Protocol):
 
     @property
     def rearm_after_s(self) -> float | None:
-        """An alarm that a person resolved while its cause goes on is raised again after this
-        time; None: only once the cause was gone in between, or is worse.
+        """Time after which an alarm is raised again that a person resolved although its cause
+        lasts; None: only when the cause was gone in between, or is worse.
         """
         ...
 
@@ -92,8 +92,8 @@ class AlarmRule(Protocol):
 
     @property
     def triggered_by(self) -> tuple[type[Message], ...]:
-        """Messages that come all the time and are judged as they come.  Besides, every rule
-        judges at every tick, and whenever something comes that does not come all the time.
+        """Frequent messages that trigger the rule at once.  Besides, every rule judges at every
+        tick and after every message that is not frequent.
         """
         ...
 

@@ -1,7 +1,7 @@
 """A member's PAR has not been confirmed in time.
 
-Only a confirmation ends it: by the button of the own unit, or by radio.  Raised once; the next
-confirmation arms it again, and so does a PAR request that is not answered in its turn.
+Only a confirmation ends it: by the button of the own unit, or by radio.  It is raised once; the
+next confirmation arms it again, and so does the next PAR request that is not answered.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""For a while the position of a wearer has been known no better than to a house."""
+"""Alarm: for some time the position of a wearer has been uncertain by the size of a house."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class PositionLost:
 
 
 def _found(unit: UnitState, fused: FusedPosition) -> tuple[str, AlarmParameters]:
-    """Code and parameters: the unit's own tracker is lost, or doubt has grown too far."""
+    """Return code and parameters: the unit's tracker is lost, or the uncertainty too large."""
     position = unit.position
     if position is not None and position.path_quality is Quality.LOST:
         reasons = codes_of(position.reasons & ~NOT_OF_STEPS)

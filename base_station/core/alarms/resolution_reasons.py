@@ -1,4 +1,4 @@
-"""Reasons for which a user resolves an alarm; the log has the code, screens have the words."""
+"""Reasons for which a user resolves an alarm; the log has the code, consoles have the text."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The thresholds of alarm rules that a station's settings may change.
+"""Thresholds of alarm rules that a station's settings may change.
 
-A field of a rule that is ``Annotated`` with its limits is one.  A set of thresholds goes by
-``rule.field``, as in ``no-motion.alarm_s``; whatever is not in it has its default.
+A field of a rule that is ``Annotated`` with its limits is one.  A set of thresholds has keys
+``rule.field``, as in ``no-motion.alarm_s``; those that are not in it have their defaults.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Thresholds = dict[str, float]
 def thresholds_of(
     rules: Sequence[AlarmRule], settings: Mapping[str, Mapping[str, float]]
 ) -> Thresholds:
-    """Those of a station's settings that are not the defaults.
+    """Return the thresholds of a station's settings that are not the defaults.
 
     Raises ConfigError where no rule has such a threshold, or cannot have such a value.
     """
@@ -62,7 +62,9 @@ def _named(rules: Sequence[AlarmRule], rule_name: str) -> AlarmRule:
 
 
 def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple[AlarmRule, ...]:
-    """Rules with a log's thresholds; one that cannot have another version's keeps its defaults."""
+    """Return the rules with a log's thresholds; a rule that refuses those of another version keeps
+    its defaults.
+    """
     return tuple(_changed_or_as_it_was(rule, thresholds) for rule in rules)
 
 
@@ -74,7 +76,7 @@ def _changed_or_as_it_was(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
 
 
 def changed_rule(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
-    """The rule with these thresholds.
+    """Return the rule with these thresholds.
 
     Raises ValidationError where one is beyond its limits, ConfigError where they do not
     go together.
@@ -88,7 +90,7 @@ def changed_rule(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
 
 
 def limits_of(rule: AlarmRule) -> Mapping[str, Any]:
-    """Type and limits of each threshold."""
+    """Return the type and limits of each threshold."""
     return _limits_of(type(rule))
 
 

@@ -1,6 +1,5 @@
-"""A unit too weak to track sends its samples, and the agent that should track for it is silent.
-
-The wearer stands still on the screen, however far he walks.
+"""Alarm: a unit sends raw samples, and the agent that tracks for it is silent.  The console then
+shows the wearer at the last position, although the wearer moves.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The unit moves as no foot does: its tracker cannot know where the wearer is."""
+"""Alarm: the unit moves as no foot does, so its tracker cannot estimate the wearer's position."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Commands to the units: their life, and saying them until they are answered."""
+"""Commands to the units: their states, and their repetition until they are answered."""

@@ -70,7 +70,7 @@ def is_delivered(state: StationState, delivery: Delivery) -> bool:
 def _end_for(
     evacuation: SentCommand, unit_ids: Iterable[str], all_clear_id: str, t_ns: int
 ) -> bool:
-    """End an evacuation for these units; True where it has any of them."""
+    """End an evacuation for these units; True where it concerns any of them."""
     ended = [evacuation.deliveries[one] for one in unit_ids if one in evacuation.deliveries]
     for delivery in ended:
         delivery.all_clear_id = delivery.all_clear_id or all_clear_id

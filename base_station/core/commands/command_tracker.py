@@ -31,13 +31,13 @@ from shared.messages import (
 from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
 MAX_OPEN = 50  # and as many again for evacuations, which wait for nothing
-CLOSED_KEPT = 10  # at hand; the log has all of them
+CLOSED_KEPT = 10  # in memory; the log has all of them
 REPLACED = coded("order-replaced", "a later rate replaces it")
 _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
-    """Create a new command.  Raises UserError where it makes no sense or has no recipient."""
+    """Create a new command.  Raises UserError where it is not valid or has no recipient."""
     _check(state, action)
     recipients = _recipients(state, action)
     command = SentCommand(
@@ -60,8 +60,8 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
 
 
 def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
-    """End the order of an earlier rate: the last one holds, and where the other is on its way, its
-    repeat would be applied behind it.
+    """End the order of an earlier position rate: the last one counts, and a repeat of the earlier
+    one would be applied after it.
     """
     if later.kind is not CommandKind.SET_POSITION_RATE:
         return
@@ -109,8 +109,8 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
 
 
 def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
-    """Wait again for the members whose answers were entered by radio; None: there are none.  Their
-    units may have received the end of the command: it is sent again.
+    """Undo answers that were entered by radio, and wait for those members again; None: there are
+    none.  Their units may have received the end of the command: it is sent again.
 
     Raises UserError where the incident of the command is closed.
     """
@@ -182,8 +182,8 @@ def expire(state: StationState) -> Iterator[SentCommand]:
 
 
 def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """Erase acknowledgements of this unit's wearers, and texts to them.  A message to them
-    ends for those whom it has not reached.  Texts to others may name them: texts that have reached
+    """Erase acknowledgements of this unit's wearers, and texts to them.  A text to them ends for
+    the recipients that it has not reached.  Texts to others may name them: texts that have reached
     all recipients are erased, too.
     """
     for command in state.commands.values():
@@ -327,7 +327,7 @@ def _is_in_use(unit: UnitState) -> bool:
 
 
 def _undelivered(command: SentCommand) -> list[Delivery]:
-    """Recipients to whom it is still on its way, as far as is known."""
+    """Return the recipients that have not confirmed its receipt."""
     return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_RECEIVED]
 
 

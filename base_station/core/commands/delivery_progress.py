@@ -56,7 +56,7 @@ def note_reply(
 
 
 def note_outputs(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """The unit has described itself: whether it can notify its wearer of open commands."""
+    """Note from a unit's description if it can notify its wearer of open commands."""
     for command in state.commands.values():
         delivery = command.deliveries.get(unit.unit_id)
         if delivery is None or delivery.can_be_notified == unit.can_be_notified:
@@ -69,7 +69,7 @@ def note_outputs(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
 def delivery_of(
     state: StationState, unit_id: str, command_id: str
 ) -> tuple[SentCommand, Delivery] | None:
-    """The order with this id, or that was sent again under it, and how far it is with a unit."""
+    """Return the order with this id, or with this id of a repeat, and its progress at a unit."""
     command = command_of(state, command_id)
     delivery = command.deliveries.get(unit_id) if command is not None else None
     return None if command is None or delivery is None else (command, delivery)
@@ -81,7 +81,7 @@ def acknowledge(delivery: Delivery, t_ns: int, via: AnsweredBy, by: str) -> None
 
 
 def _is_louder(delivery: Delivery, reply: CommandReply) -> bool:
-    """True where the unit, which has signalled by light, now does so by sound too."""
+    """True if the unit, which signalled by light only, now signals by sound too."""
     return reply.detail == SOUND and delivery.signal == LIGHT
 
 

@@ -1,7 +1,8 @@
 """Mayday acknowledged: the unit notifies its wearer that an operator has seen the call.
 
-It follows from the acknowledgement of the alarm, and waits for the link as an order does.  It is of
-one call: one that is cancelled or followed by another ends it, at the station and in the unit.
+It is created by the acknowledgement of the alarm, and waits for the link as an order does.  It
+belongs to one call, and ends when that call is cancelled or followed by another, at the station and
+in the unit.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ _LASTS_NS = 86_400 * NS_PER_S  # as long as any order may
 
 
 def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) -> SentCommand | None:
-    """Create the command of an alarm that was acknowledged; None where it is of no mayday that is
-    active, or of one of a former wearer.
+    """Create the command of an acknowledged alarm; None where its mayday is over, or was a former
+    wearer's.
     """
     unit = state.units.get(alarm.unit_id)
     if alarm.rule != MAYDAY_RULE or unit is None or not unit.mayday.is_active:

@@ -78,7 +78,7 @@ def owed(state: StationState) -> Iterator[Order]:
 
 
 def note_sent(state: StationState, unit_id: str, sent: Command) -> None:
-    """Note that the station has sent an end; where it is none any more, the order goes again."""
+    """Note that the station has sent an end; if the order is open again, it is sent again."""
     command = command_of(state, sent.ended_command_id)
     delivery = None if command is None else command.deliveries.get(unit_id)
     if command is None or delivery is None:
@@ -89,16 +89,15 @@ def note_sent(state: StationState, unit_id: str, sent: Command) -> None:
 
 
 def send_again(delivery: Delivery) -> None:
-    """The order is not over after all: where the unit may know it so, it is on its way anew."""
+    """Send an order again that is open again: the unit may have ended it."""
     if delivery.end_sent_ns is not None:
         delivery.sent_ns = delivery.received_ns = delivery.notified_ns = None
         delivery.end_sent_ns = delivery.ended_ns = None
 
 
 def note_reply(state: StationState, unit_id: str, reply: CommandReply) -> SentCommand | None:
-    """Note that a unit has answered an end; gives the order, None where that is no news.
-
-    A unit of an earlier version refuses it; there is no more to be done about that.
+    """Note that a unit has answered an end; returns the order, None where nothing changes.  A unit
+    of an earlier version refuses an end; it is then not sent again.
     """
     for command in state.commands.values():
         delivery = command.deliveries.get(unit_id)
@@ -111,7 +110,7 @@ def note_reply(state: StationState, unit_id: str, reply: CommandReply) -> SentCo
 
 
 def _end_id(command: SentCommand, delivery: Delivery) -> str:
-    """Id of its own for each time that it ends: an answer by radio can be undone and entered
-    again.
+    """Return an id that differs each time the order ends: an answer by radio can be undone and
+    entered again.
     """
     return f"{command.command_id}:end:{delivery.acknowledged_ns or delivery.expired_ns}"

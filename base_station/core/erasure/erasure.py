@@ -280,7 +280,7 @@ class CaptureClocks:
         self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
 
     def captured_ns(self, t_ns: int, header: Header) -> int | None:
-        """Capture time of a message that was logged at ``t_ns``, at most ``t_ns``; None: unknown."""
+        """Capture time, at most ``t_ns``, of a message that was logged then; None: unknown."""
         offset_ns = self._offsets_ns.get((header.unit_id, header.boot_id))
         if offset_ns is not None:
             return min(header.t_mono_ns + offset_ns, t_ns)

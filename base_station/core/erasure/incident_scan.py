@@ -185,7 +185,7 @@ class _IncidentScan:
         unit.registered = True
 
     def _note_open(self, t_ns: int, done: OperatorAction) -> bool:
-        """Note when the incident is opened, closed and no longer shown; True: this action opens it."""
+        """Note the times of opening, closing and last display; True: this action opens it."""
         incident = self._state.incidents.get(self._incident_id)
         if self._opened_ns == FOREVER_NS:
             if incident is None:

@@ -34,8 +34,8 @@ MIN_STD_M = 0.05  # no place is known better
 def evidence_of_site(
     state: StationState, site_id: str, grid: FloorGrid | None
 ) -> Mapping[str, UnitEvidence]:
-    """Everything that is known of every unit of a site that has a path, but for meetings;
-    ``grid``: the plan's walls.
+    """Return the evidence of every unit of a site that has a path, without meetings; ``grid``: the
+    plan's walls.
     """
     return {
         unit_id: evidence_of_one(state, unit_id, own_places(state, unit_id, history), grid)

@@ -1,4 +1,4 @@
-"""Test of pins: about an incident that is closed, or about the next one."""
+"""Scope of pins: the closed incident or the next one."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from shared.messages.pins import (
 
 
 def is_about(pin: Pin, closed_ns: int) -> bool:
-    """True of a pin of the closed incident. Start positions are set beforehand: one that is set
-    after an incident is about the next one.
+    """True if a pin belongs to the closed incident.  Start positions are set in advance: one that
+    is set after an incident belongs to the next one.
     """
     return pin.set_ns <= closed_ns or _is_before_close(pin.t_ns, closed_ns)
 
@@ -25,11 +25,9 @@ def is_about(pin: Pin, closed_ns: int) -> bool:
 def concerns_closed_incident(
     state: StationState, site_id: str, action: PinAction, closed_ns: int
 ) -> bool:
-    """True of an action that changes the paths of the closed incident of a site; called before the
-    action is applied.
-
-    Beacons are taken down after an incident and put up for the next one. So a placed beacon counts
-    if it was passed while it had no place, and a removed one never does.
+    """True if an action changes the paths of the closed incident of a site; called before the
+    action is applied.  Beacons are removed after an incident and placed for the next one.  So a
+    placed beacon counts if a unit passed it before it had a place, and a removed one never counts.
     """
     pins, beacons = state.sites[site_id].pins, state.sites[site_id].beacons
     match action:

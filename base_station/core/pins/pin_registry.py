@@ -38,7 +38,9 @@ DEEPEST, HIGHEST = -20, 200  # floors
 
 
 def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
-    """The units whose past this changes; UserError where it can have no effect."""
+    """Apply an action; returns the units whose paths change.  UserError where it can have no
+    effect.
+    """
     match action:
         case SetPin():
             return _set(state, [_place_pin(state, by, action)])
@@ -61,7 +63,7 @@ def forget(state: StationState, unit_id: str) -> set[str]:
 
 
 def drop(site: SiteState, unwanted: Callable[[Pin], bool]) -> set[str]:
-    """Gives whose past the pins were about."""
+    """Remove pins; returns the units that they concerned."""
     changed: set[str] = set()
     for pin_id in [one for one, pin in site.pins.items() if unwanted(pin)]:
         changed |= units_of(site.pins.pop(pin_id))
@@ -70,7 +72,7 @@ def drop(site: SiteState, unwanted: Callable[[Pin], bool]) -> set[str]:
 
 
 def reframe_pins(site: SiteState, turn_rad: float, north_m: float, east_m: float) -> None:
-    """The incident frame was moved: turned clockwise, then shifted."""
+    """Move the pins with the incident frame, which was turned clockwise, then shifted."""
     for pin_id, pin in site.pins.items():
         heading_rad = None if pin.heading_rad is None else pin.heading_rad + turn_rad
         if pin.north_m is not None and pin.east_m is not None:
@@ -100,7 +102,7 @@ def units_of(pin: Pin) -> set[str]:
 
 
 def put(site: SiteState, pin: Pin) -> None:
-    """Keep a pin that was checked, in the place of an earlier one with its id."""
+    """Store a checked pin; it replaces an earlier one with its id."""
     site.pins[pin.pin_id] = pin
     site.pin_verdicts[pin.pin_id] = WAITING
 

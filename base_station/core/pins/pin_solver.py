@@ -1,7 +1,5 @@
-"""Solves the past of units again with the pins that are known of them.
-
-A meeting pins each of the two where the other is by everything else that is known of that one,
-so that neither believes itself by way of the other.
+"""Solver of units' past paths with their pins.  A meeting pins each of the two at the other's
+position, which is solved without that meeting: so no unit's own error comes back as evidence.
 """
 
 from __future__ import annotations
@@ -69,7 +67,7 @@ class PathSolver:
         return Solution({unit_id: solution.paths[unit_id]}, verdicts)
 
     def alone(self, state: StationState, unit_id: str, history: PathHistory) -> SmoothedPath:
-        """A unit's path by all evidence but its meetings; the same at each of them."""
+        """Solve a unit's path by all evidence except its meetings, once for all of these."""
         if unit_id not in self._alone:
             places = own_places(state, unit_id, history)
             self._alone[unit_id] = self.solve(state, unit_id, places).paths[unit_id]
@@ -80,12 +78,12 @@ class PathSolver:
 class SolvedUnit:
     """Result of one unit."""
 
-    path: SmoothedPath | None  # None: no pin is of use
+    path: SmoothedPath | None  # None: no pin can be used
     trail: list[TrailStep]
 
 
 def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
-    """These units and those that met them, whose past hangs on theirs; in a fixed order."""
+    """Return these units and those that met them, in a fixed order: their paths are coupled."""
     required = set(unit_ids)
     sites = {state.units[one].site_id for one in required if one in state.units}
     pins = [pin for site_id in sites for pin in state.sites[site_id].pins.values()]
@@ -130,8 +128,8 @@ def solve_pins(
 
 
 def _store_verdict(site: SiteState, pin_id: str, found: Mapping[str, PinVerdict]) -> None:
-    """Store the worst verdict of the units that a pin concerns. Of an encounter one unit may not
-    have been solved now: its earlier verdict counts.
+    """Store the worst verdict of the units that a pin concerns.  Where only one unit of an
+    encounter was solved now, the other's earlier verdict counts.
     """
     of_units = {**dict(site.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
@@ -153,7 +151,9 @@ _SEVERITY = {"waiting": 0, "used": 1, "conflict": 2}
 def trail_of(
     state: StationState, unit_id: str, points: PathArrays, places_m: Floats
 ) -> list[TrailStep]:
-    """A path (n, 3) as the consoles draw it: thinned evenly, since the incident began."""
+    """Return a path (n, 3) as the consoles draw it: evenly thinned, from the beginning of the
+    incident.
+    """
     incident = state.incident_of(state.units[unit_id]) if unit_id in state.units else None
     since_ns = 0 if incident is None else incident.opened_ns
     rows = np.flatnonzero(points.t_ns >= since_ns)
@@ -191,7 +191,7 @@ def floors_along(site: SiteState, points: PathArrays, places_m: Floats) -> list[
 def renumbered_trail(
     site: SiteState, trail: Sequence[TrailStep], points: PathArrays
 ) -> list[TrailStep]:
-    """A trail as it was drawn, with the floors of the storeys that are known now."""
+    """Return a trail with the floor numbers of the storeys that are known now."""
     again: list[TrailStep] = []
     rows = np.searchsorted(points.t_ns, [step.t_ns for step in trail]).clip(0, len(points) - 1)
     for step, down_m in zip(trail, points.down_m[rows].tolist(), strict=True):
@@ -266,8 +266,8 @@ def _of_unit(unit_id: str, reason: str) -> str:
 
 
 def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
-    """Note when the path will have come to the first pin ahead of it, whether that waits or counts
-    for where the path has come to.
+    """Note the time of the first pin after the end of the path; at that time the path is solved
+    again.
     """
     end_ns = history.end_ns or 0
     times = [pin.t_ns for pin in pins if pin.t_ns > end_ns + AHEAD_NS]
@@ -283,7 +283,7 @@ def _verdict_of(site: SiteState, pin_id: str, unit_id: str, verdict: Verdict) ->
 
 
 def _conflict_text(pin: Pin, other: Pin | None, unit_id: str, verdict: Verdict) -> str:
-    """``other``: the pin that it contradicts; None: no single one."""
+    """Text of a pin in conflict; ``other``: the pin that it contradicts, None: no single one."""
     is_meeting = pin.kind == "meeting"
     path = (
         coded("pin-path-of", "the path of {unit}", unit=unit_id)
@@ -338,9 +338,7 @@ def _conflict_text(pin: Pin, other: Pin | None, unit_id: str, verdict: Verdict) 
 
 
 def _describe(pin: Pin, of: Pin) -> str:
-    """A pin that another contradicts, as people know it: by its note, else by when it was; one of
-    where the path begins has no time.
-    """
+    """Name a contradicted pin for a person: by its note, else by its time; a start has no time."""
     if pin.kind == "meeting":
         partner = pin.unit_id if pin.unit_id != of.unit_id else pin.other_id
         name = coded("pin-named-meeting", "the meeting with {unit}", unit=partner)

@@ -1,8 +1,6 @@
-"""Units whose past has pins: a second fuser beside the first, which uses the pins.
-
-The first fuser goes on as if there were no pin, so that removing the last one gives exactly the
-state without pins.  The second begins where the solution of the whole past ends, again
-at every change of a pin.
+"""Units with pins: each has a second fuser that uses them.  The first fuser ignores pins, so that
+removing the last pin gives exactly the state without pins.  The second one starts at the end of the
+solved path, and is set there again at every change of a pin.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ from base_station.site.floor_grid import FloorGrid
 
 
 class PinnedUnits:
-    """The fusers that know of pins, by unit."""
+    """Fusers that use pins, by unit."""
 
     def __init__(self, kind: FuserKind, smoother: Smoother, saved: Mapping[str, bytes]) -> None:
         self._kind = kind
@@ -25,7 +23,7 @@ class PinnedUnits:
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
 
     def use_kind(self, kind: FuserKind) -> None:
-        """Another kind of fuser; the past of the units is to be solved again."""
+        """Change the kind of fuser; the caller then solves the paths again."""
         self._kind, self._fusers = kind, {}
 
     def save(self) -> dict[str, bytes]:
@@ -52,8 +50,8 @@ class PinnedUnits:
         plain: Callable[[str], Fuser],
         grid: FloorGrid | None,
     ) -> dict[str, bool]:
-        """Solve the past of these units of one site, and of whom they met: all of them, and whether
-        the trail is another now.  ``plain`` gives the fuser that knows of no pin.
+        """Solve the paths of these units of one site, and of the units that they met.  Returns all
+        of them, with True where the trail changed.  ``plain`` gives the fuser that ignores pins.
         """
         known = [one for one in with_partners(state, unit_ids) if one in state.units]
         solved = solve_pins(state, self.solver(grid), known)

@@ -17,9 +17,9 @@ from base_station.core.state.pin import Pin, PinKind, reach_std_m
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 
-MAX_SIGHTINGS = MAX_PINS - 200  # reports of people have room beside sightings of units
+MAX_SIGHTINGS = MAX_PINS - 200  # the rest is for pins that people report
 SAME_VISIT_NS = 20 * NS_PER_S  # sightings closer in time than this are one
-MIN_IMPROVEMENT = 0.7  # of the standard deviation before: worth solving the past again
+MIN_IMPROVEMENT = 0.7  # of the earlier standard deviation: then the path is solved again
 REACH_M = 3.0  # of a beacon that is not placed yet
 TAG_REACH_M = 0.5  # of an arm
 MEETING_REACH_M = 3.0
@@ -94,7 +94,9 @@ def _rejection_reason(
 
 
 def _std_m(site: SiteState, sighting: Sighting) -> float:
-    """Each axis.  Somewhere on a circle of known range: half its square."""
+    """Standard deviation along each axis; a point on a circle of known range has half its square as
+    variance.
+    """
     if sighting.range_m is not None:
         return math.hypot(sighting.range_m / math.sqrt(2.0), sighting.range_std_m or 0.5)
     beacon = site.beacons.get(sighting.seen_id)
@@ -117,8 +119,8 @@ def _same_visit(site: SiteState, pin: Pin) -> Pin | None:
 
 
 def _most_redundant(site: SiteState) -> Pin:
-    """Pin to drop for room: the earliest of the longest stay of the unit with the most sightings. A
-    single passage is kept, and no unit takes the room of another.
+    """Pin to drop when there are too many: the earliest of the longest stay of the unit with the
+    most sightings.  So a single passage is kept, and no unit displaces the pins of another.
     """
     seen = _sighting_pins(site)
     ((busiest, _),) = Counter(pin.unit_id for pin in seen).most_common(1)

@@ -6,7 +6,7 @@ from base_station.core.state import StationState, UnitState
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.site.plan import Plan
 
-OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
+OUTSIDE_M = 3.0  # from the outer walls: there the pressure is that of the weather
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
 WORK_BEGINS_M = 5.0  # walked since the start: taken as inside, where there is no plan
 
@@ -25,7 +25,9 @@ def is_outside(plan: Plan | None, history: PathHistory) -> bool:
 
 
 def note_inside(state: StationState, unit: UnitState) -> None:
-    """Since when the wearer is in the building; without an outline, since work began."""
+    """Note the time since which the wearer is in the building; without an outline, since work
+    began.
+    """
     place = unit.place
     fused = place.fused
     if fused is None:

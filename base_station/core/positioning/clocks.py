@@ -10,17 +10,23 @@ from shared.messages import GpsFix
 
 
 def station_ns(state: StationState, unit: UnitState, t_mono_ns: int) -> int:
-    """The station's time of a time of the unit's path; not known yet: now."""
+    """Return the station time of a time of the unit's path; the present time where it is not known
+    yet.
+    """
     return placed_ns(unit.path_boot, t_mono_ns, state.t_ns)
 
 
 def placed_ns(boot: BootState, t_mono_ns: int, now_ns: int) -> int:
-    """The station's time of a time of a boot, at the latest now; not known yet: now."""
+    """Return the station time of a time of a boot, at most the present; the present where it is not
+    known yet.
+    """
     return min(boot.station_ns(t_mono_ns), now_ns) if boot.is_placed else now_ns
 
 
 def in_clock_of_path(unit: UnitState, fix: GpsFix) -> GpsFix:
-    """A unit that is tracked remotely has its fixes in its own clock, its path in another."""
+    """Convert a time of a fix to the clock of the path: a remotely tracked unit has its fixes in
+    its own clock, its path in the agent's.
+    """
     ahead_ns = unit.boots[-1].offset_ns - unit.path_boot.offset_ns
     if ahead_ns == 0:
         return fix

@@ -15,13 +15,13 @@ from shared.clock import NS_PER_S
 from shared.geo import anchor_through
 from shared.messages import GpsFix
 
-FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
-FAR_FIXES = 10  # in a row that no other unit's fix contradicts: the first one was wrong
+FUTURE_NS = NS_PER_S  # a fix may be this much later than the station's estimate of the unit's clock
+FAR_FIXES = 10  # in a row, contradicted by no other unit: then the first fix was wrong
 BEFORE_SITE = "of before it came to this incident"
-STAYS_M = 5.0  # walked by a unit that stays where it is: it is not carried about
+STAYS_M = 5.0  # walked at most by a unit that stays in place and is not carried about
 
 
-LATE_NS = 5 * NS_PER_S  # a fix of so long ago came out of a journal
+LATE_NS = 5 * NS_PER_S  # an older fix came from a journal
 
 
 def apply_fix(state: StationState, fusers: UnitFusers, unit: UnitState, fix: GpsFix) -> FixVerdict:
@@ -97,8 +97,8 @@ def without_common_mode_error(state: StationState, unit: UnitState, fix: PlaceFi
 def _update(
     state: StationState, fusers: UnitFusers, unit: UnitState, place: PlaceFix
 ) -> FixVerdict:
-    """The past is solved again with the fix as it came, and with the station's receiver; soon
-    where the fix fits all but the pins.
+    """Update the fusers.  The path is solved again later, with the raw fix and the station's
+    receiver: soon if only pins contradict the fix.
     """
     own = without_common_mode_error(state, unit, place)
     verdict, *pinned = [fuser.update_gnss(own) for fuser in fusers.of(unit)]

@@ -1,4 +1,4 @@
-"""The incident frame moves: all that stands in it moves along."""
+"""Moves of the incident frame, and of all coordinates in it."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def moved_to(anchor: Anchor, old: Anchor) -> RigidTransform2D:
 
 
 def moved_by(anchor: Anchor, old: Anchor, taken_by: Anchor | None) -> RigidTransform2D:
-    """Transform of fixes taken with the anchor ``taken_by``: composed through it, as a way over
-    distant wrong anchors would turn north.
+    """Transform of fixes taken with the anchor ``taken_by``, composed directly through it: a chain
+    over distant wrong anchors would turn north.
     """
     taken_by = taken_by or old
     return moved_to(old, taken_by).inverse().followed_by(moved_to(anchor, taken_by))

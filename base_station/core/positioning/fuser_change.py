@@ -1,4 +1,4 @@
-"""Change of the fuser while people are under way: the next one goes on where the last one is."""
+"""Change of the fuser during an incident: the new one continues from the last estimate."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from base_station.fusion.parameters import Parameters
 from base_station.fusion.stated_noise import with_path_noise
 from shared.messages import Position
 
-OPEN_RAD = 0.5  # standard deviation from which a heading is as good as unknown
+OPEN_RAD = 0.5  # standard deviation from which a heading counts as unknown
 
 
 def succeed(before: Fuser, after: Fuser, position: Position | None) -> None:
     """Bring a new fuser to the estimate of the one before, at the newest ``position`` of the own
-    path.  What that knew beside is lost: errors of receivers, drift, and the age of the last fix.
+    path.  Its other state is lost: errors of receivers, drift, and the age of the last fix.
     """
     if position is None:
         return

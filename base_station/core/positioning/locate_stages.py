@@ -1,7 +1,7 @@
 """Stages of an estimate on its way to the consoles (``positioning.LOCATE``).
 
-The estimate of a position that came late passes ``positioning.LATE``: it changes trail and path,
-and not the present.
+The estimate of a late position passes ``positioning.LATE``: it changes trail and path, but not the
+present position.
 """
 
 from __future__ import annotations
@@ -75,12 +75,12 @@ def apply_reported_place(update: LocationUpdate) -> None:
 
 
 def show(update: LocationUpdate) -> None:
-    """Make it the unit's position in the live state."""
+    """Store the estimate as the unit's position in the live state."""
     update.unit.place.show(update.fused, update.state.t_ns)
 
 
 def note_inside(update: LocationUpdate) -> None:
-    """Note since when the wearer is in the building."""
+    """Note the time since which the wearer is in the building."""
     building_entry.note_inside(update.state, update.unit)
 
 

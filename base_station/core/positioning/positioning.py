@@ -1,6 +1,6 @@
 """Positions of all units: the stages of a position, and the changes of frame, map and incident.
 
-Before these stages stand admission and order, and behind them the alarms (``core.unit_messages``).
+Admission and ordering come before these stages, and alarms after them (``core.unit_messages``).
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Positioning:
     # ---- a position
 
     def fuse(self, state: StationState, unit: UnitState, position: Position) -> list[Output]:
-        """Take a position into the estimate, and show where that leads."""
+        """Update the estimate with a position, and show the result."""
         fusers, history = self._fusers.of(unit), state.path_of(unit.unit_id)
         has_plan = self._fusers.grids.get(unit.site_id) is not None
         site = state.sites[unit.site_id]
@@ -112,7 +112,7 @@ class Positioning:
         return self._locate(state, unit, fusers, update.boot)
 
     def locate(self, state: StationState, unit: UnitState) -> list[Output]:
-        """Show a unit where its fusers estimate it now."""
+        """Show the present estimate of a unit's fusers."""
         return self._locate(state, unit, self._fusers.of(unit), None)
 
     def _locate(
@@ -136,8 +136,8 @@ class Positioning:
         return [update.fused]
 
     def fuse_late(self, state: StationState, unit: UnitState, position: Position) -> list[Output]:
-        """Take a position that came late into path and trail; once for each second, as trails and
-        database keep them.
+        """Insert a late position into path and trail; one for each second, as trails and database
+        keep them.
         """
         header = state.next_header()
         boot, running = unit.path_boot_of(position), unit.path_boot
@@ -169,13 +169,13 @@ class Positioning:
         return [update.fused, TrailBackfilled(unit.unit_id)]
 
     def apply_fix(self, state: StationState, unit: UnitState, fix: GpsFix) -> list[Output]:
-        """Take a satellite fix into the estimate, and show where that leads."""
+        """Update the estimate with a satellite fix, and show the result."""
         is_used = apply_fix(state, self._fusers, unit, fix).accepted
         return self.locate(state, unit) if is_used else []
 
     def solve_pins(self, state: StationState, unit_ids: Collection[str]) -> list[Output]:
-        """Solve the past of these units again, and show where that leads, members without contact
-        too.
+        """Solve the paths of these units again, and show the results, also of members without
+        contact.
         """
         solved = solve_pins(state, self._fusers, unit_ids)
         outputs: list[Output] = [PinsChanged(tuple(sorted(solved)))]
@@ -208,8 +208,8 @@ class Positioning:
         renumber(state, site_id)
 
     def use_fuser(self, state: StationState, name: str) -> set[str]:
-        """Use another fuser for all units, which go on where they are; returns those whose past is
-        to be solved again.  UserError where there is no such fuser.
+        """Use another fuser for all units, from their present estimates; returns the units whose
+        paths must be solved again.  UserError where there is no such fuser.
         """
         kind = fuser_named(name)
         if kind is None:
@@ -241,7 +241,9 @@ class Positioning:
         return kept | drop(site, lambda pin: is_about(pin, before_ns))
 
     def start(self, state: StationState, unit: UnitState, start: Start) -> None:
-        """On the plan, where there is one that people lie on (``switch_to_plan_frame``)."""
+        """Set the start of a unit's path, in the plan's frame where there is one
+        (``switch_to_plan_frame``).
+        """
         site = state.sites[unit.site_id]
         site.start_set = True
         if unit.unit_id == site.barometers.reference_id:
@@ -276,8 +278,8 @@ class Positioning:
         return set(paths)
 
     def move(self, state: StationState, unit: UnitState, site_id: str) -> set[str]:
-        """Bring a unit to another site, in whose frame nothing of its path is known yet; returns
-        the units whose pins had to do with its path.
+        """Move a unit to another site; its path begins anew in that frame.  Returns the units whose
+        pins concerned its path.
         """
         partners = drop(state.sites[unit.site_id], lambda pin: unit.unit_id in units_of(pin))
         self._fusers.forget(unit)
@@ -290,7 +292,7 @@ class Positioning:
         return partners - {unit.unit_id}
 
     def keep_sites(self, state: StationState) -> None:
-        """Let go of sites that have neither units nor an incident."""
+        """Drop sites that have neither units nor an incident."""
         used = {OWN_SITE_ID, *(unit.site_id for unit in state.units.values())}
         used |= {incident.site_id for incident in state.incidents.values()}
         for site_id in state.sites.keys() - used:
@@ -299,7 +301,7 @@ class Positioning:
             self._lost_contact.pop(site_id, None)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
-        """Delete a unit's paths and all that was learnt from them."""
+        """Delete a unit's paths and the landmarks learnt from them."""
         self._fusers.forget(unit)
         state.paths.pop(unit.unit_id, None)
         site = state.sites[unit.site_id]

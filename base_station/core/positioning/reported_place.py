@@ -19,7 +19,9 @@ from shared.quality import Quality
 def apply_reported_place(
     state: StationState, history: PathHistory, fused: FusedPosition
 ) -> FusedPosition:
-    """At the newest pin of a place that the path has not come to; ``fused`` where there is none."""
+    """Return the position at the newest pin after the end of the path; ``fused`` where there is
+    none.
+    """
     site = state.site_of(fused.unit_id)
     pin = _newest(site, history, fused.unit_id)
     place = None if pin is None else place_at(site, pin, pin.t_ns)

@@ -1,4 +1,4 @@
-"""Solved paths: the past of units is solved again with their pins, and floors get new numbers."""
+"""Solved paths: paths of units are solved again with their pins, and floors are renumbered."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def renumber(state: StationState, site_id: str) -> None:
 
 
 def renumber_next_trail(state: StationState) -> str | None:
-    """Renumber the next trail that waits for it; gives its unit where that changes the trail."""
+    """Renumber the next waiting trail; returns its unit where that changes the trail."""
     unit_id = next((one for one, path in state.paths.items() if path.is_renumbered), None)
     if unit_id is None:
         return None

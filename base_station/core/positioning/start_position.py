@@ -17,7 +17,7 @@ from base_station.fusion.odometry.start_correction import StartCorrection
 def begin(
     state: StationState, unit: UnitState, fuser: Fuser, history: PathHistory, start: Start
 ) -> None:
-    """The fuser, the path and the trail begin there."""
+    """Begin the fuser, the path and the trail at the start position."""
     before = fuser.estimate()
     fuser.start(start)
     history.set_start(start)
@@ -31,14 +31,16 @@ def replay_from_start(
     history: PathHistory,
     before: Estimate | None,
 ) -> None:
-    """The path and the trail of the run follow the fuser, which had the wearer there ``before``."""
+    """Move the path and the trail of the run as the fuser was moved; ``before``: its earlier
+    estimate.
+    """
     after = fuser.estimate()
     correction = None
     if unit.position is not None and before is not None and after is not None:
         correction = _start_correction(
             history.runs.begin_ns, unit, fuser, after.down_m - before.down_m
         )
-    if correction is None:  # it has not gone anywhere yet
+    if correction is None:  # it has not moved yet
         return
     history.apply_start_correction(correction)
     drop_learnt(state, unit.unit_id)
@@ -50,7 +52,7 @@ def replay_from_start(
 
 
 def drop_learnt(state: StationState, unit_id: str) -> None:
-    """Drop what was learnt of the building from a unit that was elsewhere."""
+    """Drop the landmarks of the building that were learnt from a unit at a wrong place."""
     site = state.site_of(unit_id)
     site.learnt_floors.drop_learnt(unit_id)
     site.learnt_building = site.learnt_building.without(unit_id)

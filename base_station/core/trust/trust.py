@@ -30,7 +30,7 @@ _AMBER_M2 = (AMBER_M / RADII_95) ** 2  # variance
 class Trust(msgspec.Struct, frozen=True):
     level: Level
     reason: str = ""  # for a person, with its code; empty: green
-    cause: str = ""  # the same without figures, to be counted
+    cause: str = ""  # the reason without figures, for statistics
 
 
 _GREEN = Trust("green")

@@ -37,7 +37,7 @@ def apply(unit: UnitState, message: Message, t_ns: int) -> None:
         case UnitEvent():
             _apply_event(unit, message, t_ns)
         case _:
-            pass  # raw samples and signs of life: that they came is all that counts here
+            pass  # raw samples and heartbeats: only their arrival counts here
 
 
 def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
@@ -49,7 +49,9 @@ def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
 
 
 def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
-    """A press and its cancellation are alerts, which overtake earlier messages of the unit."""
+    """Apply a status.  A mayday and its cancellation are alerts, which may arrive before earlier
+    messages of the unit.
+    """
     unit.status, unit.status_ns = status, t_ns
     mayday = unit.mayday
     if status.mayday == mayday.is_active:
@@ -73,8 +75,8 @@ def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> 
 def apply_late_temperature(
     unit: UnitState, temperature: Temperature, since_ns: int, t_ns: int
 ) -> None:
-    """Out of the journal: it is not about the present, and the dose of the equipment at its time
-    counts from ``since_ns`` on.
+    """Apply a temperature from the journal: it changes only the dose, and that from ``since_ns``
+    on.
     """
     header = temperature.header
     event_ns = event_time_ns(unit.boots, header, t_ns)

@@ -7,8 +7,8 @@ The number of intervals is bounded.  Beyond that the shortest gap counts as know
 assumed for it stays, and late readings in it change nothing.
 
 Classes after NIST Technical Note 1474 (Donnelly et al.): I to 100 degC for 25 min, II to 160 degC
-for 15 min, III to 260 degC for 5 min, IV above for less than 1 min.  Below 60 degC (ours)
-nothing counts.  It is no measure of the wearer's own condition.
+for 15 min, III to 260 degC for 5 min, IV above for less than 1 min.  Below 60 degC (ours) nothing
+counts.  The dose is no measure of the wearer's own condition.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ BANDS_DEGC_S = (
     (CAUTION_DEGC, 900.0),
     (60.0, 1500.0),
 )
-LONGEST_STEP_S = 10.0  # of silence that still counts as being as hot as before
+LONGEST_STEP_S = 10.0  # without readings, for which the last temperature counts on
 JOINED_NS = 3 * NS_PER_S // 2  # nothing is missing between readings so near, one a second
 MAX_INTERVALS = 500  # stretches
 

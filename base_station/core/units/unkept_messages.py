@@ -1,4 +1,6 @@
-"""Messages that units could not keep: where the link lost them too, they are in no log."""
+"""Messages that units could not store in their journals: those that the link lost too are in no
+log.
+"""
 
 from __future__ import annotations
 
