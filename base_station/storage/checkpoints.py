@@ -1,9 +1,7 @@
-"""The pipeline's state as files, one now and then, so that neither a restart nor a seek in a
-replay has to step the whole log.
-
-They are a cache: a file that is torn, of another version of the program or missing only costs
-time.  The structure of the parts of the state is unknown here, so any other program text counts as
-another version.
+"""Checkpoints: the pipeline's state in files, so that neither a restart nor a seek in a replay has
+to apply the whole log.  They are a cache: a torn or missing file, or one of another version of the
+program, only costs time.  The structure of the parts of the state is unknown here, so any other
+program text counts as another version.
 """
 
 from __future__ import annotations
@@ -57,7 +55,7 @@ class Checkpoints:
         self._changing = Lock()
         self._program = _program()
         self._useless: set[Path] = set()  # torn, or of another version of the program
-        self.is_refused = False  # the disk takes no more: save none that is not needed
+        self.is_refused = False  # the disk is full: save only what is needed
         make_folder(folder)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
@@ -80,7 +78,7 @@ class Checkpoints:
             self._thin_out()
 
     def save_if_it_can(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
-        """Save; a disk that does not take it is reported, and nothing more is to be saved."""
+        """Save, unless the disk has refused one before; a refusal is reported."""
         try:
             self.save(t_ns, events_at_t, pipeline)
         except OSError as error:

@@ -23,9 +23,11 @@ class DataFolder:
         self.radio = path / "radio"  # audio of radio channels
         self.imports = path / "imports"  # files imported into incidents
         self.database = path / "station.sqlite"
-        self.tables_behind = path / "tables-behind"  # since when, while a server was away
+        self.tables_behind = (
+            path / "tables-behind"
+        )  # time since which the tables are behind, while the server is away
         self.erasure_jobs = path / "forgetting.json"
-        # Erasures of incidents that are under way, with the people whom they concern
+        # Erasures of incidents in progress, with the people that they concern
         self.pending_erasures = path / "forgetting-begun.json"
         self.first_login = path / "first-login.txt"
 
@@ -51,9 +53,8 @@ class DataFolder:
         return self.database.exists() or noted_server(self.database) is not None
 
     def segments(self) -> Iterator[SegmentInfo]:
-        """The log's, in the order of writing; the last one is open while a station writes it.
-
-        Raises LogError when one is taken away meanwhile.
+        """Segments of the log, in the order of writing; the last one is open while a station writes
+        it.  Raises LogError when one is removed meanwhile.
         """
         is_written = FolderLock.is_held(self.path)
         paths, _ = own_segments(self.log)
@@ -71,5 +72,5 @@ class DataFolder:
         return max((segment.end_ns for segment in self.segments()), default=0)
 
     def lock(self) -> FolderLock:
-        """To change what is in it; DataFolderInUseError while a station works on it."""
+        """Lock the folder to change it; DataFolderInUseError while a station uses it."""
         return FolderLock(self.path, "station", "stop it first")

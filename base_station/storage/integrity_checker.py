@@ -1,7 +1,7 @@
 """Integrity check of the log's segments: a disk may return other bytes than were written.
 
-A segment that was whole may be damaged later, so each is checked again now and then, and at once
-where a reader meets damage.
+A segment may be damaged later, so each is checked again at intervals, and at once where a reader
+meets damage.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's house
 
 
 class IntegrityChecker:
-    """Reads the complete segments, one a look, round after round; from any thread."""
+    """Checks the complete segments in turn, one a call, again and again; from any thread."""
 
     def __init__(self, remedy: Term) -> None:
-        """``remedy``: what becomes of a damaged one, for a person."""
+        """``remedy``: what a person can do about a damaged one."""
         self._remedy = remedy
         self._lock = Lock()
         self._read: set[Path] = set()
-        self._idle = 0  # looks since all were read
+        self._idle = 0  # calls since all were read
         self._damaged: dict[Path, str] = {}  # with the damage
         self._cut: set[Path] = set()  # of these, those that can be read and lack something
         self._missing: tuple[int, ...] = ()  # numbers between those that are there
@@ -68,7 +68,7 @@ class IntegrityChecker:
             self.note_mended(path, again=False)
 
     def note_damaged(self, path: Path, damage: str, *, is_cut: bool = False) -> None:
-        """Not all of this segment can be read, or, where it ``is_cut``, is left of it."""
+        """Note that a segment cannot be read completely, or has lost a part (``is_cut``)."""
         with self._lock:
             known = path in self._damaged
             self._damaged[path] = damage
@@ -100,12 +100,12 @@ class IntegrityChecker:
             return frozenset(self._lacks)
 
     def has_lost(self, t_ns: int) -> bool:
-        """True if the log had records of about this time and has them no more."""
+        """True if the log has lost records of about this time."""
         with self._lock:
             return any(lack.covers(t_ns) for lack in self._lacks.values())
 
     def recheck(self, what: str) -> None:
-        """A reader of the log has met this damage."""
+        """Check a segment again in which a reader has met damage."""
         with self._lock:
             if not any(path.name in what for path in self._damaged):
                 self._begin_again(set(self._damaged))
@@ -122,13 +122,15 @@ class IntegrityChecker:
 
     @property
     def missing(self) -> tuple[int, ...]:
-        """The numbers of segments that are gone."""
+        """Numbers of missing segments."""
         with self._lock:
             missing = {lack.number for lack in self._lacks.values() if lack.is_file_missing}
             return tuple(sorted(missing | set(self._missing)))
 
     def note_mended(self, path: Path, *, again: bool = True) -> None:
-        """All of this segment can be read; ``again``: for it was written anew, and is looked at."""
+        """Note that a segment can be read completely; ``again``: it was rewritten, and is checked
+        again.
+        """
         with self._lock:
             if again:
                 self._read.discard(path)

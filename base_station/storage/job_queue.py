@@ -1,4 +1,4 @@
-"""Job queue: what people asked for, in a file until it is done, with how far each job is."""
+"""Job queue: requested jobs with their progress, in a file until they are done."""
 
 from __future__ import annotations
 

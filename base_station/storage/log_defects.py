@@ -1,4 +1,4 @@
-"""Defects of a log, in words for a person; more of them may be found while the log is read."""
+"""Defects of a log, as sentences for a person; reading the log may add more."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from shared.mcap_log import (
 
 
 class LogDefects:
-    """From one thread; what it gives may be read from any."""
+    """Defects found so far: one thread checks, any may read."""
 
     def __init__(
         self,
@@ -33,9 +33,9 @@ class LogDefects:
         until_ns: int | None = None,
         on_defect: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """``known``: what the database knows of the segments.  ``is_written``: a station writes
-        the newest one.  ``from_ns``: segments that end before it are not read.  ``until_ns``: later
-        losses are no flaw.  ``on_defect`` receives each flaw.
+        """``known``: the segments by the database.  ``is_written``: a station writes the newest
+        one.  ``from_ns``: segments that end before it are not read.  ``until_ns``: later losses are
+        no flaw.  ``on_defect`` receives each flaw.
         """
         self._log = log
         self._known = known
@@ -52,7 +52,7 @@ class LogDefects:
         return next(self._search, None) is not None
 
     def note(self, flaw: str) -> bool:
-        """Report a flaw once, however often a reader meets it; True if it is new."""
+        """Report a defect once, also if readers meet it again; True if it is new."""
         if flaw in self._found:
             return False
         self._found = (*self._found, flaw)
@@ -125,13 +125,13 @@ def _info_of(path: Path) -> SegmentInfo:
 
 
 def open_segment_info(path: Path) -> SegmentInfo:
-    """A segment that is not opened: to count its records is to read it."""
+    """Describe a segment by its file alone: counting its records would mean to read it."""
     began_ns = segment_began_ns(path)
     return SegmentInfo(path, SegmentState.OPEN, began_ns, began_ns, sys.maxsize, 0)
 
 
 def _in_words(lacks: Sequence[LogGap]) -> Iterator[str]:
-    """Those that are gone one behind the other are one sentence."""
+    """Describe missing files in words; consecutive ones are one sentence."""
     yield from (str(lack) for lack in lacks if not lack.is_file_missing)
     missing = sorted((lack for lack in lacks if lack.is_file_missing), key=lambda lack: lack.number)
     for _, run in groupby(enumerate(missing), lambda one: one[1].number - one[0]):

@@ -1,5 +1,5 @@
-"""Segments that a log lacks: its files, held against each other and against
-what the database knows of them.  Pure.
+"""Missing segments of a log, found by comparing its files with each other and with the database.
+Pure.
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ from pathlib import Path
 from shared.clock import NS_PER_S
 from shared.mcap_log import SegmentInfo, SegmentState, segment_began_ns, segment_number
 
-_KILLED_NS = 2 * NS_PER_S  # of the newest segment, which a kill may cost: it was not on the disk
+_KILLED_NS = (
+    2 * NS_PER_S
+)  # of the newest segment, which a kill may lose: it was not on the disk yet
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +39,7 @@ def names_between(known: Iterable[KnownSegment], from_ns: int, until_ns: int) ->
 
 @dataclass(frozen=True, slots=True)
 class LogGap:
-    """Something of this segment is gone, between these times; 0: they are not known."""
+    """Loss in a segment, between these times; 0: unknown."""
 
     number: int
     name: str  # empty: only its number is known
@@ -46,7 +48,7 @@ class LogGap:
     kept: int = 0  # its messages
     of: int = 0  # 0: unknown
     is_file_missing: bool = False  # the file itself
-    is_newest: bool = False  # the table is some seconds behind, so it may have gone on
+    is_newest: bool = False  # the table is some seconds behind, so it may have more records
 
     def covers(self, t_ns: int) -> bool:
         return self.from_ns <= t_ns and (self.is_newest or t_ns <= self.until_ns)
@@ -100,7 +102,7 @@ def _missing_file(name: str, first_ns: int, last_ns: int, messages: int) -> LogG
 def _cut(
     segment: SegmentInfo, following: SegmentInfo | None, known: KnownSegment | None
 ) -> LogGap | None:
-    """A segment is made with its first record, so that an empty one was emptied."""
+    """Return the loss in a cut file; a segment has a record from its start, so none is empty."""
     is_short = known is not None and segment.messages < known.messages
     if known and not following and known.last_ns - segment.end_ns <= _KILLED_NS:
         is_short = False

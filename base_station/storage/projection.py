@@ -1,4 +1,4 @@
-"""Changes of the queryable store that follow from the log, and the writer that takes them."""
+"""Projection of the log into the database, and the interface of its writer."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDesc
 
 
 class Projection(msgspec.Struct, frozen=True):
-    """Changes of the queryable store by one step of the drive; every part is idempotent, so that a
-    log may be projected again.
+    """Changes of the database by one step of the engine; every part is idempotent, so that a log
+    may be projected again.
     """
 
     t_ns: int  # station time
@@ -36,26 +36,28 @@ class ProjectionSink(Protocol):
     """The SQL store's writer."""
 
     def project(self, projection: Projection) -> None:
-        """Never raises for a store that fails: ``problem`` reports it, and it is tried again."""
+        """Queue a projection.  Never raises where the database fails: ``problem`` reports it, and
+        it is tried again.
+        """
         ...
 
     def problem(self) -> str:
-        """Reason why the store is behind, as a sentence for a person; empty: all is well."""
+        """Reason why the database is behind, as a sentence for a person; empty: it is not."""
         ...
 
 
 class ProjectedTables(Protocol):
-    """The tables that are projected, for those who read them."""
+    """Projected tables, for readers that need them up to date."""
 
     def flush(self) -> bool:
-        """Wait, not for ever, until all that was projected before this call is in the tables;
-        False where it is not.
+        """Wait, with a limit, until all projections before this call are in the tables; False where
+        they are not.
         """
         ...
 
     def flush_soon(self) -> Callable[[], bool]:
-        """Have decisions before this call written now, without waiting.  Gives a function: True if
-        that is over: they are in the tables, or the database does not take them.
+        """Have decisions before this call written now, without waiting.  Returns a function that
+        gives True when they are in the tables, or the database does not take them.
         """
         ...
 

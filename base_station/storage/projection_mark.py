@@ -1,4 +1,4 @@
-"""Mark of the time since which the tables may lack what the log knows; it outlives a kill."""
+"""Mark of the time since which the tables may lack records of the log; it survives a kill."""
 
 from __future__ import annotations
 

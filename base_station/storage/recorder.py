@@ -1,7 +1,6 @@
-"""The always-on recorder: all messages and decisions of the station go through here first.
-
-A thread of its own writes, so that a slow disk does not hold up the live picture.  What must
-not be lost (alarms, actions, alerts) is waited for.
+"""Recorder of the log: all messages and decisions of the station are written here first.  A thread
+of its own writes, so that a slow disk does not delay the live picture.  Only urgent records
+(alarms, actions, alerts) wait for the disk.
 """
 
 from __future__ import annotations
@@ -36,10 +35,10 @@ logger = logging.getLogger(__name__)
 LOG_FOLDER = "log"
 _TURN_S = 0.05
 _LONGEST_WAIT_S = 2.0  # for the disk, by the writer of an urgent record
-_HUNG_WAIT_S = 0.2  # as long as a disk takes that has just come back
+_HUNG_WAIT_S = 0.2  # while it hangs: enough for a disk that answers again
 _DISK_CHECK_INTERVAL_NS = 5 * NS_PER_S
-_STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, or hangs
-_HANGS_NS = 5 * NS_PER_S  # it hangs
+_STUCK_NS = NS_PER_S  # a longer round of the thread: the disk is slow, or hangs
+_HANGS_NS = 5 * NS_PER_S  # a longer round: it hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
 _RECORD_BYTES = 200  # that a record takes in memory beside the bytes of its key and payload
 _ALERTS_SHARE = 1.25  # of the bytes that may wait for the disk, until alerts are refused
@@ -62,7 +61,7 @@ def _clock_time(t_ns: int) -> Measure:
 
 
 class Recorder:
-    """Holds the data folder from making until ``close``; one station a folder.
+    """Recorder of one data folder, which it locks until ``close``: one station a folder.
 
     ``write`` and ``flush`` may be called from any thread; records are kept in the order of the
     calls.  Neither raises for the disk: ``problem`` describes it, records wait in
@@ -76,7 +75,7 @@ class Recorder:
         policy: SegmentPolicy | None = None,
         on_segment: SegmentHandler = ignore_segment,
     ) -> None:
-        """Takes the folder, mends what a crash left torn, and begins to record.
+        """Lock the folder, recover torn segments, and begin to record.
 
         ``on_segment`` is called with every segment of the log before this returns, and with
         each further one when it is complete, then in the recorder's thread.  Raises
@@ -135,7 +134,7 @@ class Recorder:
         return True
 
     def flush(self) -> bool:
-        """Bring to the disk what was written so far; whether it is there now."""
+        """Flush all records so far to the disk; True if they are there now."""
         with self._news:
             self._flushes_asked += 1
             mine = self._flushes_asked
@@ -147,11 +146,13 @@ class Recorder:
         return done and not self._failure and not self._writer.problem
 
     def continue_log(self, number: int, log_id: str) -> None:
-        """The log had a segment of this number, and this id where none that is left has one."""
+        """Continue the numbers of a log whose newest segment is lost; ``log_id`` counts where no
+        segment has one.
+        """
         self._writer.continue_log(number, log_id)
 
     def complete_segments(self) -> tuple[Path, ...]:
-        """End the open segment and go on in another; all that are complete, in order.
+        """End the open segment and begin another; returns the complete ones, in order.
 
         Raises LogError where the disk does not take what is left.
         """
@@ -168,7 +169,7 @@ class Recorder:
         return tuple(segment.path for segment in self._list.segments)
 
     def note_rewritten(self, path: Path) -> None:
-        """A complete segment has another content now."""
+        """Read the description of a complete segment again, which was rewritten."""
         self._list.note_rewritten(path)
 
     @property
@@ -205,7 +206,7 @@ class Recorder:
 
     @property
     def low_disk_space(self) -> str:
-        """That the disk will soon take nothing, as a sentence for a person; empty: it will."""
+        """Warning that the disk is nearly full, as a sentence for a person; empty: it is not."""
         if self._disk_free_bytes >= _LITTLE_FREE_BYTES:
             return ""
         return coded(
@@ -217,7 +218,7 @@ class Recorder:
 
     @property
     def is_behind(self) -> bool:
-        """True if records of a second ago may not be on the disk yet."""
+        """True if records from a second ago may not be on the disk yet."""
         stuck = self._turn_ns > _STUCK_NS
         return stuck or bool(self._failure or self._writer.problem)
 
@@ -241,8 +242,8 @@ class Recorder:
 
     @property
     def refuses(self) -> bool:
-        """True if memory is full of records that the disk does not take.  For alerts, and for
-        actions, of which there is no other copy, there is some room left then.
+        """True if the memory for waiting records is full.  Alerts and actions, of which there is no
+        other copy, still have some room then.
         """
         return bool(self._failure) or self._waiting_bytes > self._waiting_max
 
@@ -257,12 +258,12 @@ class Recorder:
 
     @property
     def on_disk(self) -> int:
-        """So many of these, the first ones, outlive a power cut."""
+        """Number of the first of these that are safe from a power cut."""
         return self._on_disk
 
     @property
     def disk_free_bytes(self) -> int:
-        """As it was some seconds ago at most."""
+        """Free bytes of the disk, at most some seconds old."""
         return self._disk_free_bytes
 
     @property
@@ -275,7 +276,7 @@ class Recorder:
         return (*self._list.segments, *([] if current is None else [current]))
 
     def close(self) -> None:
-        """Write what is left, end the segment in order, and let go of the folder."""
+        """Write the rest, end the segment, and unlock the folder."""
         self._worker.close()
         self._lock.close()
 
@@ -290,19 +291,19 @@ class Recorder:
         self._refused_until_ns = max(t_ns, self._refused_until_ns)
 
     def _has_room_for(self, key: str) -> bool:
-        """Though there is none for everything."""
+        """True if this kind of record may use the reserved memory."""
         share = _share_of(key)
         return not self._failure and self._waiting_bytes <= share * self._waiting_max
 
     @property
     def _turn_ns(self) -> int:
-        """Duration so far of the thread's present turn."""
+        """Duration so far of the thread's present round."""
         return self._clock.monotonic_ns() - self._turned_ns
 
     # ---- in the thread
 
     def _step(self) -> float:
-        """Take a turn; a recorder that failed stops: records behind a gap would be wrong."""
+        """Run one round.  A recorder that failed stops: records behind a gap would be wrong."""
         try:
             self._record()
         except Exception as error:
@@ -348,8 +349,8 @@ class Recorder:
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
 
     def _take(self) -> tuple[list[LogRecord], int, bool]:
-        """Return what came, up to which flush was asked for, and whether a segment ends behind
-        it.
+        """Return the queued records, the number of the last requested flush, and True where the
+        segment ends behind these records.
         """
         with self._news:
             records, self._queue = self._queue, []

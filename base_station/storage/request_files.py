@@ -1,7 +1,7 @@
 """Requests of a command to the station that runs on the same folder, and its answers, as files.
 
-Whoever can write in the folder has all of it already, so a file there is proof enough, as it is
-for ``muster base users``.  One request of a kind at a time: a file of it, and one of the answer.
+Write access to the folder is the authorisation, as it is for ``muster base users``.  There is one
+request of a kind at a time: a file with it, and a file with the answer.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class RequestFiles(Generic[RequestT, AnswerT]):
         self._request, self._answer = request, answer
 
     def answer_pending(self, answer: Callable[[RequestT], AnswerT]) -> None:
-        """Answer the request that there is, if there is one: the station's side."""
+        """Answer the waiting request, if there is one; called by the station."""
         try:
             asked = msgspec.json.decode(self._request_file.read_bytes(), type=self._request)
         except FileNotFoundError:
@@ -64,7 +64,7 @@ class RequestFiles(Generic[RequestT, AnswerT]):
         self._request_file.unlink(missing_ok=True)
 
     def ask(self, request: RequestT) -> AnswerT:
-        """Return the answer of the station that runs on the folder: the command's side.
+        """Return the answer of the station that runs on the folder; called by the command.
 
         Raises UserError with the station's reason, or where it does not answer.
         """

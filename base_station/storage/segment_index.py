@@ -1,4 +1,4 @@
-"""Keeps the table of log segments like the log."""
+"""Table of log segments, kept equal to the log's files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class SegmentIndex:
         self._written: dict[Path, SegmentInfo] = {}
 
     def update(self, segments: Iterable[SegmentInfo]) -> None:
-        """Write what has changed; where the store does not take it, next time again."""
+        """Write changes; where the database does not take them, the next call tries again."""
         lacking = self._lacking()
         changed = [
             one

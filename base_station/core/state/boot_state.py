@@ -1,4 +1,4 @@
-"""One run of a unit's program, as the station knows it.
+"""One run of a unit's program, seen from the station.
 
 Its received messages, its clock offset, and its time of presence: two runs that were present at the
 same time are two machines under one name.
@@ -15,12 +15,14 @@ from shared.messages import Header
 from shared.sequence_set import SequenceSet
 
 CLOCK_DRIFT_PART = 10_000  # a unit's clock drifts by at most so small a part of the time
-LIVE_WITHIN_NS = 5 * NS_PER_S  # a message may be so much slower than the fastest and is of now
+LIVE_WITHIN_NS = 5 * NS_PER_S  # a live message is slower than the fastest by at most this
 BACKDATED_NS = 60 * NS_PER_S  # by a unit that knows the station's time
-CLOCK_SET_NS = 60 * NS_PER_S  # no link delays all messages by so much: the station's clock was set
+CLOCK_SET_NS = 60 * NS_PER_S  # all messages late by this: the station's clock was set
 CLOCK_SET_MESSAGES = 20  # in a row
 UNIT_OFFSET_SLACK_NS = NS_PER_S // 20
-SLOWEST_NS = 30 * NS_PER_S  # a unit's own estimate that makes all its messages slower is wrong
+SLOWEST_NS = (
+    30 * NS_PER_S
+)  # a unit's clock estimate is wrong if all its messages would be slower than this
 
 
 class BootState(msgspec.Struct):
@@ -50,8 +52,8 @@ class BootState(msgspec.Struct):
         return t_mono_ns + self.offset_ns
 
     def note(self, t_ns: int, header: Header) -> bool:
-        """Judge the clock by a message.  True if the message is live, neither delayed nor repeated:
-        its unit is there.
+        """Update the clock offset by a message.  True if the message is live, neither delayed nor
+        repeated.
         """
         slower_ns = t_ns - header.t_mono_ns - self._bound_clock(t_ns, header)
         if slower_ns > LIVE_WITHIN_NS:
@@ -65,8 +67,8 @@ class BootState(msgspec.Struct):
         return True
 
     def _bound_clock(self, t_ns: int, header: Header) -> int:
-        """The least delayed message bounds the offset, which may drift by what clocks do; within
-        that bound the unit's own estimate is better.  Gives the bound of now.
+        """Return the bound of the offset by the least delayed message, with the drift of clocks
+        since.  Within that bound the unit's own estimate is better.
         """
         offset_ns = t_ns - header.t_mono_ns
         drifted_ns = self.min_offset_ns + (t_ns - self.min_offset_t_ns) // CLOCK_DRIFT_PART
@@ -83,19 +85,19 @@ class BootState(msgspec.Struct):
 
     @property
     def live_ns(self) -> int:
-        """Duration of its presence; no overlap is longer."""
+        """Time for which it was live; no overlap is longer."""
         return self.last_live_ns - self.first_live_ns
 
     def overlap_ns(self, other: BootState) -> int:
-        """Duration of the presence of both at once; not positive: one after the other."""
+        """Time for which both were live at once; not positive: one after the other."""
         return min(self.last_live_ns, other.last_live_ns) - max(
             self.first_live_ns, other.first_live_ns
         )
 
 
 def captured_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int | None:
-    """Capture time of a message by the station's clock, at the latest now; None of a run of the
-    unit whose clock is not known.
+    """Capture time of a message by the station's clock, at most the present; None where the run's
+    clock is unknown.
     """
     boot = next((one for one in boots if one.boot_id == header.boot_id), None)
     if boot is None or not boot.is_placed:

@@ -1,4 +1,4 @@
-"""Commands to units, and how far each has got with each unit.  Plain data."""
+"""Commands to units, and their progress at each unit.  Plain data."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ NOTIFIES_WEARER = ASKS_WEARER | {
 class Delivery(msgspec.Struct):
     """One command on its way to one unit; station times, None: not yet.
 
-    Times are filled in, so that the order in which news come does not matter; what was entered by
-    radio alone can be undone.
+    Each event sets its own time, so that the order of arrival does not matter.  Only answers
+    entered by radio can be undone.
     """
 
     unit_id: str
@@ -42,7 +42,7 @@ class Delivery(msgspec.Struct):
     # Whether the unit has an output, as known at the last event; None: unknown.
     can_be_notified: bool | None = None
     end_sent_ns: int | None = None  # the unit may know that the order is over for it
-    ended_ns: int | None = None  # it has answered that it knows
+    ended_ns: int | None = None  # it has answered the end
     repeat_id: str = ""  # under which it was sent again last; empty: it was not
     repeated_ns: int | None = None
     expires_ns: int | None = None  # of the repeat; None: as the command
@@ -51,11 +51,11 @@ class Delivery(msgspec.Struct):
     reason_code: TextCode = NO_CODE  # of ``reason``; NO_CODE: from a foreign unit
 
     def set_reason(self, reason: str) -> None:
-        """With its code, where it has one."""
+        """Set the reason with its code, where it has one."""
         self.reason, self.reason_code = str(reason), code_of_text(reason)
 
     def expire(self, t_ns: int, reason: str) -> None:
-        """End it before its answer."""
+        """Expire it without an answer."""
         self.expired_ns = t_ns
         self.set_reason(reason)
 
@@ -96,7 +96,7 @@ class SentCommand(msgspec.Struct):
         return any(map(self.awaits, self.deliveries.values()))
 
     def awaits(self, delivery: Delivery) -> bool:
-        """True if anything more is to come of it in time."""
+        """True if its state may still change by time."""
         state = self.state_of(delivery)
         if state in {"queued", "sent"}:
             return True
@@ -114,7 +114,7 @@ class SentCommand(msgspec.Struct):
         return self.notifies_wearer and bool(delivery.can_be_notified)
 
     def state_of(self, delivery: Delivery) -> DeliveryState:
-        """State of a delivery; a late answer counts, too."""
+        """Return the state of a delivery; a late answer counts, too."""
         if delivery.acknowledged_ns is not None:
             return "acknowledged"
         received = delivery.received_ns is not None

@@ -1,7 +1,5 @@
-"""Duty: PAR and work time of a member who wears a unit in an open incident.
-
-Station times.  The state is computed from the list of confirmations, so that undoing one gives the
-state without it.
+"""Duty: PAR and work time of a member who wears a unit in an open incident.  Station times.  The
+state is computed from the list of confirmations, so that one of them can be undone.
 """
 
 from __future__ import annotations
@@ -13,7 +11,7 @@ import msgspec
 Source = Literal["self", "radio"]
 Confirmed = Literal["self", "radio", "not_yet"]
 
-CONFIRMATIONS_KEPT = 20  # at hand, to be undone; the log has all of them
+CONFIRMATIONS_KEPT = 20  # that can be undone; the log has all of them
 
 
 class ParConfirmation(msgspec.Struct, frozen=True):
@@ -39,7 +37,7 @@ class Duty(msgspec.Struct):
 
     @property
     def confirmation(self) -> ParConfirmation | None:
-        """The last one; None: not yet confirmed."""
+        """Last confirmation; None: not yet confirmed."""
         return self.confirmations[-1] if self.confirmations else None
 
     @property
@@ -49,7 +47,7 @@ class Duty(msgspec.Struct):
 
     @property
     def counts_from_ns(self) -> int:
-        """From when the time until the next PAR runs."""
+        """Station time from which the time until the next PAR counts."""
         last = self.confirmation
         return self.since_ns if last is None else last.t_ns
 
@@ -67,12 +65,12 @@ class Duty(msgspec.Struct):
 
     @property
     def open_request_ns(self) -> int | None:
-        """Since when a PAR request waits for the answer."""
+        """Station time of the oldest PAR request without an answer."""
         return next(iter(self.open_requests_ns), None)
 
     @property
     def confirmation_text(self) -> str:
-        """For a person: the kind of the last confirmation, and its author."""
+        """Kind and author of the last confirmation, as text for a person."""
         last = self.confirmation
         if last is None:
             return "PAR not yet confirmed"
@@ -80,7 +78,7 @@ class Duty(msgspec.Struct):
         return f"PAR confirmed {how} {last.by}"
 
     def confirm(self, confirmation: ParConfirmation) -> None:
-        """In its place in time: an answer may have waited in a journal while others came."""
+        """Insert a confirmation by its time: it may come late, from a journal."""
         self.confirmations.append(confirmation)
         self.confirmations.sort(key=lambda one: one.t_ns)
         del self.confirmations[:-CONFIRMATIONS_KEPT]
@@ -93,7 +91,7 @@ class Duty(msgspec.Struct):
             ]
 
     def undo(self, entry_id: str) -> bool:
-        """Take out the answers entered by radio under this id; False: there are none."""
+        """Remove the answers entered by radio under this id; False: there are none."""
         kept = [one for one in self.confirmations if not entry_id or one.entry_id != entry_id]
         is_undone = len(kept) < len(self.confirmations)
         self.confirmations = kept

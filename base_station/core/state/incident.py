@@ -14,7 +14,7 @@ class Incident(msgspec.Struct, frozen=True):
     name: str
     opened_ns: int
     closed_ns: int | None = None
-    par_interval_s: float = PAR_INTERVAL_S  # each member is to be confirmed this often
+    par_interval_s: float = PAR_INTERVAL_S  # between two confirmations of a member
     work_limit_s: float = WORK_LIMIT_S  # of work, after which a member should rest
     site_id: str = OWN_SITE_ID  # its ground
     dispatch: NoteDispatch | None = None  # newest report of the dispatch from which it was opened

@@ -12,7 +12,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Header
 
 MESSAGES_HZ = 400  # a unit sends some fifty
-ALERTS_HZ = 20  # of their own: a mayday passes whatever else its unit sends
+ALERTS_HZ = 20  # counted apart, so that other messages never keep back a mayday
 BYTES_PER_S = 1_000_000
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
@@ -21,7 +21,7 @@ BOOTS_KEPT = (
 )
 STARTS_KEPT = 16
 RESTART_STORM_NS = 60 * NS_PER_S  # no program starts more often than that in such a time
-MIN_OVERLAP_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
+MIN_OVERLAP_NS = 5 * NS_PER_S  # two runs live at once for this time are two machines
 
 Link = Literal["live", "stale", "lost", "never"]
 Freshness = Literal["new", "old", "repeat"]  # old: a later message of the channel came before it
@@ -54,7 +54,7 @@ class MessageStream(msgspec.Struct):
             self.duplicates += 1
             return "repeat"
         self.last_message_ns, self.is_unlinked = t_ns, False
-        if channel is not GPS:  # a receiver may be wrong about when its fix was valid
+        if channel is not GPS:  # the time of a fix may be wrong
             running, is_first = self.boots[-1], not boot.is_placed  # its journal came before it
             if boot.note(t_ns, header) and boot is not running:
                 silent_ns = t_ns - running.last_live_ns
@@ -76,7 +76,7 @@ class MessageStream(msgspec.Struct):
         return boot is not None and seq in boot.seen
 
     def is_restart_storm(self, boot_id: int, t_ns: int) -> bool:
-        """True for a live message of one more boot than there can be in such a time."""
+        """True for a live message that is of more boots than are possible in that time."""
         often = len(self.starts_ns) == STARTS_KEPT and t_ns - self.starts_ns[0] < RESTART_STORM_NS
         return often and self._known_boot(boot_id) is None
 
@@ -87,8 +87,8 @@ class MessageStream(msgspec.Struct):
             boot.seen.discard(seq)
 
     def accept_backfilled(self, boot_id: int, seq: int) -> Freshness:
-        """Note a message out of the unit's journal, or one that cannot be read; it does not show
-        that the unit is there now.
+        """Note a message from the unit's journal, or one that cannot be read; it does not show that
+        the unit has contact.
         """
         boot = self._known_boot(boot_id)
         if boot is None:
@@ -109,7 +109,7 @@ class MessageStream(msgspec.Struct):
         return max(duplicates, key=lambda one: one.last_live_ns, default=None)
 
     def _boot(self, boot_id: int, t_ns: int) -> BootState:
-        """Boot of a live message; an unknown one is the one that runs now."""
+        """Return the boot of a live message; an unknown one becomes the running one."""
         boot = self._known_boot(boot_id)
         if boot is None:
             boot = BootState(boot_id)

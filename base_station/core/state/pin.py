@@ -1,6 +1,6 @@
 """Pins: places of a wearer that people or beacons report, and the verdict on each.
 
-A pin is kept as it was set, whatever other data shows; ``PinVerdict`` rates it.
+A pin is stored as it was set, also where other data contradicts it; ``PinVerdict`` rates it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Pin(msgspec.Struct, frozen=True):
 
 
 class PinVerdict(msgspec.Struct, frozen=True):
-    """Verdict of the solution with everything else on a pin."""
+    """Verdict on a pin by the path that is solved with all evidence."""
 
     state: PinState
     residual_m: float | None = None  # between the pin and the trail
@@ -53,7 +53,7 @@ class PinVerdict(msgspec.Struct, frozen=True):
         residual_m: float | None = None,
         sigmas: float | None = None,
     ) -> PinVerdict:
-        """A verdict with a text that may have its code with it."""
+        """Return a verdict; the text may carry its code."""
         return cls(state, residual_m, sigmas, str(text), text_code=code_of_text(text))
 
     @property
@@ -78,7 +78,9 @@ class Beacon(msgspec.Struct):
 
 
 def reach_std_m(reach_m: float) -> float:
-    """Each axis, of somewhere within reach: a quarter of its square."""
+    """Standard deviation along each axis of a point anywhere within reach: its variance is a
+    quarter of the square of the reach.
+    """
     return max(reach_m / 2.0, 0.3)
 
 

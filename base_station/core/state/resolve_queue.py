@@ -1,7 +1,6 @@
-"""Queue of units with pins whose journal brought more of the past: their trails are solved again.
-
-A journal brings hundreds of messages; the trail is solved once they stop coming, or now and then
-while they go on, and never for more than one unit at a tick.
+"""Queue of units with pins whose journal brought late messages: their trails are solved again.  A
+journal brings hundreds of messages.  So a trail is solved when they stop, or every few seconds
+while they continue, for one unit a tick.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ def request_resolve(late: dict[str, PendingResolve], unit_id: str, now_ns: int) 
 
 
 def pop_due(late: dict[str, PendingResolve], now_ns: int) -> str | None:
-    """The unit that has waited longest, taken out; None where nothing is due."""
+    """Remove and return the unit that has waited longest; None where nothing is due."""
     due = [
         (waiting.first_ns, unit_id) for unit_id, waiting in late.items() if waiting.is_due(now_ns)
     ]

@@ -1,4 +1,4 @@
-"""Site: the ground on which people work, with its frame and all that is known of it."""
+"""Site: ground on which people work, with its frame, plan, pins and floors."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class SiteState(msgspec.Struct):
 
     @property
     def placed_plan(self) -> Plan | None:
-        """The plan; None: it is not placed.  Then the first fix put the frame, before there was a
-        plan, and positions of people on it are unknown.
+        """Plan; None: it has no known position in the incident frame, because the first fix defined
+        that before there was a plan.
         """
         return None if self.anchor_by_gps else self.plan
 

@@ -53,7 +53,7 @@ class StationState(msgspec.Struct):
         default_factory=lambda: {OWN_SITE_ID: SiteState()}
     )  # by id
     paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units
-    trust_ns: int = 0  # when lights were last looked at
+    trust_ns: int = 0  # of the last update of the trust tallies
     late: dict[str, PendingResolve] = msgspec.field(
         default_factory=dict
     )  # pinned units: to be solved again

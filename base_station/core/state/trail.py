@@ -1,5 +1,5 @@
-"""The way that the console draws behind a unit: whole since the incident began, and bounded in
-length.
+"""Trail that the console draws behind a unit: complete from the beginning of the incident, and
+bounded in length.
 
 Its older part is thinned by Douglas and Peucker (1973) and stays within a stated distance of the
 original.  The last minutes, which are drawn of every unit, stay point by point.
@@ -21,7 +21,7 @@ TRAIL_POINTS = 900  # points of a trail in the console, at most; the log has all
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
 TRAIL_REST_NS = 15 * NS_PER_S  # a wearer at rest leaves a point this often
-TRAIL_GAP_NS = 20 * NS_PER_S  # over more than this the way is unknown
+TRAIL_GAP_NS = 20 * NS_PER_S  # after a longer gap the way between is unknown
 TOLERANCE_M = 0.5  # of thinning, at first; doubled while too many points are left
 RECENT_POINTS = 300  # five minutes of walking
 OLDER_POINTS = 500  # at most, of all that was before
@@ -56,7 +56,7 @@ def extend_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
 
 
 def insert_into_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
-    """Put a point that came late in its place, where none is near in time."""
+    """Insert a late point by its time, where none is near in time."""
     place = bisect_left(trail, fused.t_meas_ns, key=lambda step: step.t_ns)
     before, after = trail[max(place - 1, 0) : place], trail[place : place + 1]
     if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in before + after):
@@ -78,14 +78,14 @@ def insert_into_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
 
 
 def bound(trail: list[TrailStep]) -> None:
-    """Thin it where it has become too long."""
+    """Thin the trail where it is too long."""
     if len(trail) > TRAIL_POINTS:
         trail[:] = _thinned(trail)
 
 
 def _thinned(trail: list[TrailStep]) -> list[TrailStep]:
     """At most ``RECENT_POINTS`` and ``OLDER_POINTS``.  Changes of the floor and ends of gaps stay;
-    of so many of these that they are too many by themselves, the oldest go.
+    if these alone are too many, the oldest are dropped.
     """
     older, recent = trail[:-RECENT_POINTS], trail[-RECENT_POINTS:]
     tolerance_m = TOLERANCE_M

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-LONGEST_S = 5.0  # between two looks: a station that was away saw no light
+LONGEST_S = 5.0  # counted between two updates: longer while the station did not run
 
 
 class TrustTally(msgspec.Struct):

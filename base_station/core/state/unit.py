@@ -104,8 +104,8 @@ class UnitState(MessageStream):
         return worn.name if worn else self.label or self.unit_id
 
     def names_at(self, t_ns: int | None) -> tuple[str, str | None]:
-        """Name for people at that time; None: it is not known, and the second one is that of
-        whom it may be instead, where there is one.
+        """Return the name for people at that time, and where the time is unknown, None and the name
+        of the other possible wearer, if there is one.
         """
         if t_ns is None:
             before = [one.name for one in self.wearer.former if one.name != self.name]
@@ -113,13 +113,13 @@ class UnitState(MessageStream):
         return self.name_at(t_ns), None
 
     def end_wearing(self, t_ns: int) -> None:
-        """The person who wears it does so no more."""
+        """End the wearing by the present wearer."""
         self.wearer.end(t_ns, self._concerns)
         self.place.inside_since_ns = None
 
     def _concerns(self, worn: FormerWearer) -> bool:
-        """True if its last press, fall or rest was in that time: the wearer to whom it belongs does
-        not change with the next wearers.
+        """True if its last mayday, fall or rest was in that time: it belongs to the wearer of that
+        time.
         """
         alerts = [alert for alert in (self.mayday, self.fall) if alert.t_ns is not None]
         if any(worn.from_ns <= alert.event_ns < worn.until_ns for alert in alerts):
@@ -146,9 +146,7 @@ class UnitState(MessageStream):
 
     @property
     def path_boot(self) -> BootState:
-        """In whose clock, and since whose start, its positions are: of a run that has only just
-        begun there are none yet.
-        """
+        """Boot whose clock its positions use; a run that has just begun has no positions yet."""
         boots, position = self._path_boots, self.position
         if position is None or boots[-1].boot_id == position.header.boot_id:  # nearly always
             return boots[-1]
@@ -167,8 +165,8 @@ class UnitState(MessageStream):
 
     @property
     def shown_status(self) -> Status | None:
-        """Its own status, with what only strides tell from the agent that tracks for it; of a unit
-        that posts samples, and nothing else, the agent's of its wearer.
+        """Its own status, completed by the values that the tracking agent computes from strides;
+        for a unit that sends only samples, the agent's status of the wearer.
         """
         agent = self.tracker
         if agent is None or agent.status is None or not self.is_tracked_remotely:

@@ -43,5 +43,5 @@ class MaydayCall(UnitAlert):
         self.boot_id, self.seq, self.cancelled_ns = header.boot_id, header.seq, None
 
     def cancel(self, t_ns: int, event_ns: int) -> None:
-        """Note that the wearer has taken the press back."""
+        """Note that the wearer has cancelled the mayday."""
         self.cancelled_ns, self.cancelled_event_ns = t_ns, event_ns

@@ -19,7 +19,7 @@ class UnitPlace(msgspec.Struct):
     last_backfill_s: int = 0  # second of station time of the last late position that was shown
 
     def show(self, fused: FusedPosition, t_ns: int) -> None:
-        """Make it the position of now."""
+        """Store it as the present position."""
         self.fused, self.reach = fused, ()
         if fused.quality is not LOST:
             self.lost_since_ns = None

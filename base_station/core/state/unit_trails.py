@@ -1,4 +1,4 @@
-"""Trails of a unit: the one that is shown, and beside it the one without any pin."""
+"""Trails of a unit: the one that is shown, and the one without pins."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class UnitTrails(msgspec.Struct):
         extend_trail(self.shown, shown)
 
     def insert(self, plain: FusedPosition, shown: FusedPosition) -> None:
-        """Put a point that came late in its place, where none is near in time."""
+        """Insert a late point by its time, where none is near in time."""
         if self.unpinned is not None:
             insert_into_trail(self.unpinned, plain)
         insert_into_trail(self.shown, shown)
 
     def replace_plain(self, since_ns: int, trail: list[TrailStep]) -> None:
-        """Without any pin, the wearer was elsewhere since then."""
+        """Replace the trail without pins from a time on."""
         plain = self.plain
         plain[:] = [*(step for step in plain if step.t_ns < since_ns), *trail]
         bound(plain)
@@ -43,7 +43,7 @@ class UnitTrails(msgspec.Struct):
         self.shown = trail
 
     def restore_unpinned(self) -> bool:
-        """No pin is left that matters; True where that changes the shown trail."""
+        """Show the trail without pins again; True where that changes the shown trail."""
         if self.unpinned is None:
             return False
         self.shown, self.unpinned = self.unpinned, None

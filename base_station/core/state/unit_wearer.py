@@ -1,4 +1,4 @@
-"""Wearers of a unit: the person who wears it, and those who wore it before."""
+"""Wearers of a unit, the present one and former ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Person(msgspec.Struct, frozen=True):
 
     @property
     def named(self) -> str:
-        """The name, or the reference in whose place it is shown."""
+        """Name, or the reference that is replaced by the name when it is shown."""
         return self.name or reference_to(self.person_id)
 
 
@@ -63,7 +63,7 @@ class UnitWearer(msgspec.Struct):
         return worn[-1] if worn else None
 
     def end(self, t_ns: int, is_concerned: Callable[[FormerWearer], bool]) -> None:
-        """The person wears it no more; ``is_concerned``: an alarm may be about a former wearer."""
+        """End the wearing; ``is_concerned``: an alarm may be about this wearer."""
         if self.person is not None:
             former = FormerWearer(self.person.named, self.since_ns, t_ns)
             wearers = [*self.former, former]
@@ -72,5 +72,5 @@ class UnitWearer(msgspec.Struct):
         self.person, self.since_ns = None, t_ns
 
     def erase_names(self) -> None:
-        """Erase the names of former wearers; that the unit was worn stays."""
+        """Erase the names of former wearers; the times of wearing stay."""
         self.former = [msgspec.structs.replace(one, name=ERASED_TEXT) for one in self.former]

@@ -1,1 +1,1 @@
-"""The SQL store, for queries.  The log is the truth; most tables are a projection of it."""
+"""SQL database, for queries.  The log is the primary record; most tables are a projection of it."""

@@ -5,9 +5,9 @@ the database cannot log in with it.
 
 Of two stations each has sessions of its own, and one table of users.  To end a user's sessions, a
 new *generation* of them is begun in that table: it ends those at the other station too, which
-copies it.  A new user with the name of a removed one does not get that one's generation.
-Removals are noted for good (``tombstones``), and of a role and a password the later one holds:
-changes at one station while the other was off hold at both when they meet, whichever leads by then.
+copies it.  A new user with the name of a removed one does not get that one's generation.  Removals
+are noted for good (``tombstones``), and of a role and a password the later one holds: so changes at
+one station while the other was off apply to both when they have contact again.
 """
 
 from __future__ import annotations
@@ -121,19 +121,19 @@ class Accounts:
             return {row[0]: row[1] for row in rows}
 
     def end_sessions(self, username: str) -> None:
-        """Everybody who is logged in as this user has to log in again."""
+        """End all sessions of a user, who has to log in again."""
         self._let_in.forget_all()
         with self._store.write() as session:
             _end_sessions(session, _user(session, username))
 
     def verify_password(self, username: str, password: str) -> bool:
-        """Takes as long for a name that does not exist."""
+        """Check a password; takes the same time for an unknown name."""
         with self._store.read() as session:
             user = session.get(User, username)
         return self._passwords.is_valid(password, None if user is None else user.password_hash)
 
     def log_in(self, username: str, password: str) -> str | None:
-        """The secret of a new session; None where name or password is wrong."""
+        """Begin a session and return its secret; None where name or password is wrong."""
         with self._store.read() as session:
             user = session.get(User, username)
         stored = None if user is None else user.password_hash
@@ -148,7 +148,9 @@ class Accounts:
             return self._begin_session(session, username, user.generation, expires_ns)
 
     def begin_session(self, username: str) -> str:
-        """The secret of a new session of who has just changed the password in one that it ended."""
+        """Begin a session after a change of the password, which ended the one before, and return
+        its secret.
+        """
         with self._store.write() as session:
             expires_ns = self._clock.utc_ns() + SESSION_S * NS_PER_S
             generation = _user(session, username).generation
@@ -202,7 +204,7 @@ class Accounts:
     # ---- login at the other station, by ticket
 
     def create_login_ticket(self, secret: str) -> str | None:
-        """A ticket that logs its holder in at the other station as the user of this session,
+        """Return a ticket that logs its holder in at the other station as the user of this session,
         within ``LOGIN_TICKET_S``; None where there is no such session.
         """
         if self.of_session(secret) is None:
@@ -222,8 +224,8 @@ class Accounts:
         return ticket
 
     def redeem_login_ticket(self, ticket: str) -> str | None:
-        """The secret of a new session, which ends when the one before it would have; None where
-        the ticket is of no use (any more).
+        """Begin a session that ends when the one before it would have, and return its secret; None
+        where the ticket is not valid (any more).
         """
         with self._store.write() as session:
             found = session.execute(
@@ -253,7 +255,9 @@ class Accounts:
         expires_ns: int | None,
         scopes: Collection[str] = (),
     ) -> tuple[str, str]:
-        """``(token_id, secret)``; the secret is never to be had again.  What has ended goes."""
+        """Return ``(token_id, secret)`` of a new token; the secret cannot be read again.  Ended
+        tokens are deleted.
+        """
         secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
         with self._store.write() as session:
             mine = _is_own(username)
@@ -338,7 +342,7 @@ def _user(session: Session, username: str) -> User:
 
 
 def _end_sessions(session: Session, user: User) -> None:
-    """Here, and at the other station when it has copied the user."""
+    """End a user's sessions here, and at the other station when it has copied the user."""
     user.generation += 1
     session.execute(delete(LoginSession).where(LoginSession.username == user.username))
 

@@ -1,4 +1,4 @@
-"""Copies of incidents in an archive, as the database knows them: down to ranges of bytes."""
+"""Index of incident copies in archives, down to ranges of bytes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from shared.mcap_log import ChunkRange, SegmentRanges
 
 
 class ArchivedFile(msgspec.Struct, frozen=True):
-    """A file of a copy, and where in it is what."""
+    """File of a copy, with the byte ranges of its content."""
 
     name: str
     size_bytes: int
@@ -60,7 +60,7 @@ class ArchivedCopies:
             return [(incident, known_ns) for incident, known_ns in found]
 
     def waiting(self, archive: str, until_ns: int) -> Sequence[str]:
-        """Ids of these, without bringing the index up to date."""
+        """Return the ids of waiting incidents, without updating the index."""
         wanted = select(IncidentRow.incident_id).where(*_is_due(archive, until_ns))
         with self._store.read() as session:
             return session.scalars(wanted.order_by(IncidentRow.opened_ns)).all()

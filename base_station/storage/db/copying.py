@@ -1,4 +1,4 @@
-"""Copies of a database: into another file, and into memory where the disk takes nothing."""
+"""Copies of a database: into another file, and into memory where the disk cannot be written."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _OF_USERS = ("sessions", "hand_overs", "api_tokens")  # without users they are o
 
 
 def copy_readable(path: Path, target: sqlite3.Connection) -> tuple[str, ...]:
-    """Copies what the log cannot give; gives the tables that cannot be read.
+    """Copy the rows that the log does not have; returns the tables that cannot be read.
 
     Raises sqlite3.Error where ``target`` does not take them.
     """
@@ -44,7 +44,7 @@ def copy_readable(path: Path, target: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def set_aside(path: Path) -> Path:
-    """Gives the damaged file its other name, which it returns; nothing is left at ``path``."""
+    """Rename the damaged file, and return its new name."""
     aside = _free_name(path)
     for suffix in ("", "-wal"):
         part = beside(path, suffix)
@@ -56,7 +56,7 @@ def set_aside(path: Path) -> Path:
 
 
 def remove_damaged(path: Path) -> int:
-    """Remove what was set aside of this database; the number of files."""
+    """Remove the damaged files that were set aside; returns their number."""
     aside = list(path.parent.glob(f"{path.name}{_DAMAGED}*"))
     for file in aside:
         file.unlink()

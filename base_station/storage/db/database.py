@@ -1,4 +1,4 @@
-"""The database of a station, as those use it who read and write its tables."""
+"""Interface of a station's database, for readers and writers of its tables."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class Database(Protocol):
 
     @property
     def in_memory(self) -> bool:
-        """True if its disk takes nothing, and what is changed waits for that."""
+        """True if its disk cannot be written: changes are in memory and wait for it."""
         ...
 
     @property
     def is_away(self) -> bool:
-        """True if it does not answer just now: calls fail at once then."""
+        """True if it does not answer: calls then fail at once."""
         ...
 
     def read(self) -> AbstractContextManager[Session]:
@@ -47,11 +47,11 @@ class Database(Protocol):
         ...
 
     def check_disk(self) -> None:
-        """Called now and then while nothing is to be written: go on where it works again."""
+        """Try to return to the disk; called at intervals while nothing is to be written."""
         ...
 
     def compact(self) -> int:
-        """Leave no byte of what was deleted or replaced; gives the number of files removed."""
+        """Overwrite deleted and replaced data; returns the number of files removed."""
         ...
 
     def close(self) -> None: ...

@@ -1,4 +1,4 @@
-"""Writes and reads what the stations of a department have reported."""
+"""Tables of a department: writes and reads the reports of its stations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Takes what is to be forgotten of people out of the tables; the audit keeps who did what."""
+"""Erasure of people and incidents in the tables; the audit keeps authors and kinds of actions."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ _ERASED_PERSON = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
-    """Every statement may run again."""
+    """Erase in all tables; every statement may run again."""
     for one in erasure.wearings:
         session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
         session.execute(delete(UnitStart).where(_within(UnitStart, one)))
@@ -117,8 +117,8 @@ def _delete_computed_results(session: Session, erasure: Erasure) -> None:
 
 
 def _outdate_copies(session: Session, erasure: Erasure) -> None:
-    """Have copies made anew that may have the people: of a person all, as any may mention them (the
-    copying finds out which do); of an incident those of its time.
+    """Mark copies in archives as outdated that may have the people: of a person all of them, as any
+    may mention the person; of an incident those of its time.
     """
     outdated = update(ArchivedIncident).values(known_ns=OUTDATED_NS)
     if not erasure.person_id:
@@ -154,7 +154,7 @@ def wearings_of(session: Session, person_id: str, until_ns: int) -> list[Wearing
 
 
 def erased_detail(incident_id: str) -> str:
-    """Detail of an entry of the audit of which nothing else is left."""
+    """Return the detail of an audit entry whose content is erased."""
     return f"{ERASED_TEXT} {incident_id}".rstrip()
 
 
@@ -171,7 +171,7 @@ def erased_incidents(session: Session) -> dict[str, int]:
 
 def incidents_to_erase(session: Session, closed_before_ns: int) -> list[tuple[str, int]]:
     """Ids of incidents that were closed before then, the first closed first, each with the time of
-    its newest late data; not those that are erased with all that came late.
+    its newest late data; without those that are erased with all late data.
     """
     erased_ns = erased_incidents(session)
     closed = (
@@ -225,7 +225,7 @@ def _rewrite_alarm(session: Session, alarm: AlarmRow, names: _Names, covered: bo
 
 
 def _audit(session: Session, erasure: Erasure) -> None:
-    """Names, words and places go; that it was done, when and by whom stays."""
+    """Erase names, texts and places in the audit; kind, time and author of an action stay."""
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
         names = _Names(erasure, erasure.people_at(entry.t_ns))
@@ -249,7 +249,7 @@ def _audit(session: Session, erasure: Erasure) -> None:
 
 
 class _Names:
-    """Names, and references to people, that go from a text."""
+    """Names and references that are removed from texts."""
 
     def __init__(self, erasure: Erasure, person_ids: Collection[str]) -> None:
         self._older = OlderNames(erasure.names)
@@ -261,7 +261,7 @@ class _Names:
 
 
 def _is_place_of(entry: AuditEntry, erasure: Erasure) -> bool:
-    """True if it says where a unit was whose wearer of that time is to be forgotten."""
+    """True if it has the place of a unit at a time when an erased person wore it."""
     about = _PLACED_NS.search(entry.detail)
     times_ns = {entry.t_ns, int(about[1]) if about else 0} - {0}
     units = [
@@ -319,7 +319,7 @@ def _apart(entry: AuditEntry, erasure: Erasure) -> str:
 
 
 def _cut_out(session: Session, one: Wearing) -> None:
-    """Nobody wears the unit in that time."""
+    """Remove the wearer of the unit in that time."""
     overlapping = select(Assignment).where(
         Assignment.unit_id == one.unit_id,
         Assignment.from_ns < one.until_ns,

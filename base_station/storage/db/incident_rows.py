@@ -42,7 +42,7 @@ _TABLES: tuple[type[Base], ...] = (
 
 
 def rows_of_incident(store: Database, incident: IncidentRow) -> dict[str, list[Row]]:
-    """By the name of the table; of each the rows of the incident's time, or all that stands."""
+    """Return the rows by table: those of the incident's time, or all where rows have no time."""
     with store.read() as session:
         return {table.__tablename__: _rows(session, table, incident) for table in _TABLES}
 

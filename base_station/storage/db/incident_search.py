@@ -35,7 +35,7 @@ class IncidentQuery(msgspec.Struct, frozen=True):
 
     @property
     def is_plain(self) -> bool:
-        """Only a time is asked for."""
+        """True if the query has only a time."""
         return not (self.text.strip() or self.person.strip() or self.alarm.strip())
 
 
@@ -58,7 +58,7 @@ class IncidentSearch:
             return newest(session, wanted, opened_ns, IncidentRow.incident_id, limit)
 
     def terms(self, incident_id: str) -> dict[str, set[str]]:
-        """By what it is found: words, people and alarms, by their kind (``search_index``)."""
+        """Return the terms of the query by kind: words, people and alarms (``search_index``)."""
         wanted = select(SearchTerm.kind, SearchTerm.value)
         found: dict[str, set[str]] = {}
         with self._store.read() as session:

@@ -1,6 +1,5 @@
-"""Directory of people by the person ids of the log: name, crew, role and photo, of the database.
-
-Kept in memory, for the engine's thread reads it whenever a person is shown.
+"""Directory of people by the person ids of the log: name, crew, role and photo, from the database.
+It is in memory, because the engine's thread reads it whenever a person is shown.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ _ID_SHOWN = 8  # digits of an id that has no name
 
 
 class KnownPerson(msgspec.Struct, frozen=True):
-    """A person as shown now, whatever the name was when something was recorded."""
+    """Person as shown now, with the present name."""
 
     name: str
     crew: str = ""
@@ -33,7 +32,7 @@ FORGOTTEN = KnownPerson(ERASED_TEXT)
 
 
 def person_lookup(known: Mapping[str, KnownPerson]) -> PersonLookup:
-    """Lookup of people; one whose name was lost with a database is shown by the id."""
+    """Return a lookup of people; a person whose name is lost is shown by the id."""
 
     def look_up(person_id: str) -> KnownPerson:
         return known.get(person_id) or KnownPerson(f"person {person_id[:_ID_SHOWN]}")
@@ -42,7 +41,7 @@ def person_lookup(known: Mapping[str, KnownPerson]) -> PersonLookup:
 
 
 def shown_text(text: str, people: PersonLookup) -> str:
-    """A text of the log with the names of whom it mentions."""
+    """Return a text of the log with names in place of references."""
     return with_names(text, lambda person_id: people(person_id).name)
 
 

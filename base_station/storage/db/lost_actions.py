@@ -1,5 +1,5 @@
-"""Operators' actions that the log has no more, as the audit has them, and the people of an incident
-as the tables have them.
+"""Operators' actions that the log has lost, read from the audit, and the people of an incident,
+read from the tables.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def lost_actions(session: Session, in_log: Collection[str]) -> Iterator[Record]:
 
 
 def worn_in(session: Session, incident_id: str) -> list[Wearing]:
-    """Times in which units were in the incident, of those that anybody wore there."""
+    """Return the times in which worn units were in the incident."""
     ended_ns = func.coalesce(IncidentMember.until_ns, IncidentRow.closed_ns)
     worn = (
         select(IncidentMember.unit_id, IncidentMember.from_ns, ended_ns)

@@ -1,7 +1,6 @@
-"""A copy of the station's database in memory, for as long as its disk takes nothing.
-
-Changes in it meanwhile are noted transaction by transaction, and made again in the file when the
-disk takes something: changes of others there since stay.
+"""Copy of the station's database in memory, while its disk cannot be written.  Its transactions are
+recorded, and repeated in the file when the disk can be written again; changes that others made in
+the file meanwhile stay.
 """
 
 from __future__ import annotations
@@ -88,25 +87,27 @@ class MemoryCopy:
         return len(self._waiting) >= _WAITING_MAX
 
     def keep(self, changes: list[Statement]) -> None:
-        """A transaction that has been committed here is to be done in the file, too; one that is to
-        be made gets all of it.
+        """Keep a transaction that was committed here, to repeat it in the file; a file that is made
+        anew gets everything.
         """
         if changes and not self.is_new:
             self._waiting.append(changes)
 
     def execute(self, changes: list[Statement]) -> None:
-        """A transaction that the disk did not take.  Raises SQLAlchemyError or sqlite3.Error."""
+        """Execute a transaction that the disk did not take.  Raises SQLAlchemyError or
+        sqlite3.Error.
+        """
         with writing(self.engine, []).begin() as connection:
             for change in changes:
                 change.execute(connection)
 
     def write_to(self, engine: Engine) -> int:
-        """Do in the file what waits, all or nothing; how many transactions it refused, as something
-        else has been done there since.  Raises SQLAlchemyError or sqlite3.Error.
+        """Repeat the waiting transactions in the file, all or nothing; returns the number that it
+        refused, because of other changes there.  Raises SQLAlchemyError or sqlite3.Error.
         """
         refused = 0
         with writing(engine, []).begin() as connection:
-            # That it takes a byte is to be known also where nothing waits.
+            # The test that the disk can be written is needed also where nothing waits.
             connection.execute(text("PRAGMA user_version = 0"))
             for changes in self._waiting:
                 try:
@@ -158,7 +159,7 @@ class MemoryCopy:
                 self.close()
 
     def leave(self) -> None:
-        """Closed once its last reader is done: the database would be gone under him."""
+        """Close the copy when its last reader has ended: closing deletes the database."""
         with self._lock:
             self._is_left, is_idle = True, not self._readers
         if is_idle:

@@ -1,7 +1,7 @@
-"""Brings a database to the schema of this program.
+"""Migration of a database to the schema of this program.
 
 A new file gets the tables of the models at once: to make them by all migrations, one after the
-other, takes three times as long, and Alembic.  Tests hold both ways against each other.
+other, takes three times as long, and Alembic.  Tests compare both ways.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ def open_database(path: Path) -> Database:
 
 
 def open_live_server(server: ServerAddress, path: Path) -> tuple[ServerStore, bool]:
-    """A live station's database on a server; whether it was new, and users, people and all else
-    that no log has were copied from the file ``path``.  Raises StoreError.
+    """Open a live station's database on a server.  Returns True too if it was new: then users,
+    people and all else that no log has were copied from the file ``path``.  Raises StoreError.
     """
     noted = noted_server(path)
     store = ServerStore(server, is_station=True)

@@ -1,4 +1,4 @@
-"""Lists that grow without end are read page by page, the newest first."""
+"""Pages of lists that grow without limit, the newest rows first."""
 
 from __future__ import annotations
 

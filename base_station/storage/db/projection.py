@@ -1,8 +1,7 @@
-"""Writes what the drive decided into the tables, in a thread of its own.
-
-The drive never waits for the database: projections queue up and go in together, one
-transaction every half second or when someone asks for them (``flush``, ``flush_soon``).  While the
-disk takes nothing they go into the copy in memory and queue on: they go into the file when it does.
+"""Writer of projections into the tables, in a thread of its own.  The engine never waits for the
+database: projections are queued and written together, in one transaction every half second or on
+request (``flush``, ``flush_soon``).  While the disk cannot be written they go into the copy in
+memory and stay queued for the file.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from shared.worker import Worker
 
 PERIOD_S = 0.5
 BATCH = 2_000
-MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
+MAX_PENDING = 100_000  # about an hour of twenty units; more are only in the log
 
 _NO_NUMBER = "a position is no number"
 
@@ -45,11 +44,11 @@ class Missing(NamedTuple):
 
 
 class SqlProjection:
-    """A ``ProjectionSink`` on the store, and the ``ProjectedTables`` of those who read it."""
+    """Writer of projections: a ``ProjectionSink``, and ``ProjectedTables`` for readers."""
 
     def __init__(self, store: Database, mark: ProjectionMark | None = None) -> None:
-        """``mark``: of a database that may be away for long; what it misses for want of room here,
-        or by a kill, is projected again from the log (``missing``).
+        """``mark``: for a database that may be away for long: projections that are lost here, for
+        want of room or by a kill, are made again from the log (``missing``).
         """
         self._store = store
         self._mark = mark
@@ -211,7 +210,7 @@ class SqlProjection:
         return True
 
     def _note_in_memory(self, batch: Sequence[Projection]) -> None:
-        """They wait for the disk; what no table can hold is counted when that takes them."""
+        """Note projections that are in memory only and wait for the disk."""
         with self._changed:
             self._failure = ""
             done = {id(projection) for projection in batch}
@@ -227,7 +226,7 @@ class SqlProjection:
         self._set_mark()
 
     def _set_mark(self) -> None:
-        """A kill does not make it forgotten that something waits."""
+        """Set the mark, so that waiting projections are known after a kill."""
         with self._changed:
             since_ns = self._pending[0].t_ns if self._pending else None
         if self._mark is not None and not self._marked and since_ns is not None:
@@ -245,7 +244,9 @@ class SqlProjection:
                 self._marked = False
 
     def _complete(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
-        """Done with the batch: written, or given up for a reason; ``left_out``: places in it."""
+        """Remove a batch that was written or given up; ``left_out``: positions in it that no table
+        can hold.
+        """
         with self._changed:
             self._failure = ""
             self._dropped += left_out

@@ -1,4 +1,4 @@
-"""Reads a database and leaves its folder as it was, byte for byte and name for name.
+"""Reading of a database without any change in its folder.
 
 SQLite puts the index of its WAL beside a database that it reads, and leaves it there; in a folder
 without write permission it cannot read it at all.
@@ -69,7 +69,7 @@ def _size(path: Path) -> int:
 
 
 def beside(path: Path, suffix: str) -> Path:
-    """A file that SQLite puts beside a database."""
+    """Return the path of a file that SQLite puts beside a database."""
     return path.with_name(path.name + suffix)
 
 

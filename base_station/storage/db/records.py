@@ -94,7 +94,7 @@ class Records:
     # ---- incidents
 
     def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[IncidentRow]:
-        """Those opened in the window, newest first (``pages.newest``)."""
+        """Return the incidents opened in the window, newest first (``pages.newest``)."""
         wanted = select(IncidentRow).where(*_in(opened, IncidentRow.opened_ns))
         with self._store.read() as session:
             return newest(session, wanted, IncidentRow.opened_ns, IncidentRow.incident_id, limit)
@@ -102,7 +102,7 @@ class Records:
     def find_incidents(
         self, query: IncidentQuery, limit: int | None = None
     ) -> Sequence[IncidentRow]:
-        """Those of which all of the query is true, newest first (``pages.newest``)."""
+        """Return the incidents that match the query, newest first (``pages.newest``)."""
         return IncidentSearch(self._store).find(query, limit)
 
     def incident(self, incident_id: str) -> IncidentRow | None:
@@ -115,7 +115,7 @@ class Records:
             return incidents_to_erase(session, closed_before_ns)
 
     def require_incident(self, incident_id: str) -> IncidentRow:
-        """Raises UserError, which names those that are known."""
+        """Return the incident; UserError, with the known ones, where there is none."""
         incident = self.incident(incident_id)
         if incident is None:
             with self._store.read() as session:
@@ -149,7 +149,7 @@ class Records:
             return session.scalars(select(Unit.unit_id).where(moved).order_by(Unit.unit_id)).all()
 
     def track(self, unit_id: str, window: Window, every_s: int = 1) -> list[TrackSample]:
-        """By time; of every ``every_s`` seconds the first point."""
+        """Return the points of a unit by time; of every ``every_s`` seconds the first one."""
         inside = _points_of(unit_id, window)
         wanted = select(*_TRACK_COLUMNS).where(*inside).order_by(TrackPoint.t_s)
         if every_s > 1:
@@ -159,7 +159,7 @@ class Records:
             return [TrackSample(*row) for row in session.execute(wanted)]
 
     def members_of(self, incident: IncidentRow) -> Members:
-        """Units that were in the incident, with their times."""
+        """Return the units that were in the incident, with their times."""
         with self._store.read() as session:
             return members_of(session, incident)
 
@@ -185,8 +185,8 @@ class Records:
     def alarms(
         self, raised: Window, limit: int | None = None, incident: IncidentRow | None = None
     ) -> Sequence[AlarmRow]:
-        """Those raised in the window, newest first (``pages.newest``); with an incident, those of
-        its members and of the station itself.
+        """Return the alarms raised in the window, newest first (``pages.newest``); with an
+        incident, those of its members and of the station itself.
         """
         wanted = select(AlarmRow).where(*_in(raised, AlarmRow.raised_ns))
         if incident is not None and incident.has_members:
@@ -217,7 +217,9 @@ class Records:
     # ---- site
 
     def anchor(self, until_ns: int = FOREVER_NS, site_id: str = "") -> Anchor | None:
-        """The last one of a site set before ``until_ns``; without one, the first set later."""
+        """Return the last anchor of a site set before ``until_ns``; without one, the first set
+        later.
+        """
         with self._store.read() as session:
             t_ns, is_there = models.AnchorRow.t_ns, _is_on(models.AnchorRow.incident_id, site_id)
             of_site = select(models.AnchorRow).where(is_there)
@@ -229,7 +231,7 @@ class Records:
         return Anchor(row.lat_deg, row.lon_deg, row.height_m, row.plan_rotation_rad)
 
     def plan(self, until_ns: int = FOREVER_NS, site_id: str = "") -> bytes | None:
-        """The last one of a site set before ``until_ns``, as site GeoJSON."""
+        """Return the last plan of a site set before ``until_ns``, as site GeoJSON."""
         with self._store.read() as session:
             return session.scalars(
                 select(PlanRow.geojson)
@@ -252,7 +254,7 @@ class Records:
     def forget_projections(self) -> None:
         """Empty every table that the log can make again."""
         with self._store.write() as session:
-            if is_on_server(session):  # which would go through every row
+            if is_on_server(session):  # there DELETE would visit every row
                 names = ", ".join(table.__tablename__ for table in PROJECTIONS)
                 session.execute(text(f"TRUNCATE {names}"))
                 return
@@ -274,7 +276,7 @@ class Records:
             )
 
     def audit_once(self, by: str, done: Mapping[str, tuple[str, str]]) -> None:
-        """Action and detail by the id of their entry; what has an entry already keeps it."""
+        """Add audit entries of actions and details by their ids; existing entries stay."""
         t_ns = self._clock.utc_ns()
         rows = [
             {"entry_id": entry_id, "t_ns": t_ns, "by": by, "action": action, "detail": detail}
@@ -284,7 +286,7 @@ class Records:
             session.execute(insert_into(session, AuditEntry).on_conflict_do_nothing(), rows)
 
     def audited(self, beginnings: Iterable[str]) -> AuditEntry | None:
-        """The first entry whose id begins in one of these ways."""
+        """Return the first entry whose id has one of these prefixes."""
         begins = or_(*(AuditEntry.entry_id.startswith(one, autoescape=True) for one in beginnings))
         wanted = select(AuditEntry).where(begins).order_by(AuditEntry.number).limit(1)
         with self._store.read() as session:

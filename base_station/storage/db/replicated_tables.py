@@ -39,7 +39,7 @@ from base_station.storage.db.replicated_rows import (
 from base_station.storage.db.upserts import insert_into
 
 _REMOVED = "removed_ns"  # of an earlier version's rows there is none
-_NUMBER = "number"  # of an audit entry, at the station that is asked
+_NUMBER = "number"  # of an audit entry, at the other station
 _SINCE = {"role_ns": 0, "password_ns": 0}  # as sent by a station of an earlier version
 
 
@@ -69,7 +69,8 @@ class ReplicatedTables:
                 session.merge(LostTable(name=name))
 
     def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
-        """Make these tables like the active station's.  Gives names of rows that were only here.
+        """Copy the active station's tables into these; returns the names of rows that were only
+        here.
 
         Sessions that began here stay; photos are kept where their hash is the same, and a base map
         stays until the other one has come.  Rows removed here do not come back, and rows
@@ -102,16 +103,15 @@ class ReplicatedTables:
 
     def restore_lost_rows(self, standby: ReplicatedRows) -> tuple[str, ...]:
         """Take back rows that this station lost with its database and the standby still has; gives
-        their names.  Pictures are asked for afterwards.
-
-        What was entered here since stays as it is.  An administrator whom the station made itself,
-        because it had no user, goes where there is another again.
+        their names.  Pictures are requested afterwards.  Rows that were entered here since stay.
+        The administrator that the station made itself, because it had no user, is removed where
+        another one exists again.
         """
         with self._store.write() as session:
             return restore_lost_rows(session, standby)
 
     def lost(self) -> tuple[str, ...]:
-        """Tables that were made again, and do not have their rows back so far."""
+        """Tables that were made again and wait for their rows."""
         with self._store.read() as session:
             return lost_tables(session)
 
@@ -121,8 +121,8 @@ class ReplicatedTables:
             return "base_map" in lost_tables(session) and not rows_of(session, BaseMap)
 
     def apply_removals(self, standby: ReplicatedRows) -> bool:
-        """Apply removals that the standby made while it was not reachable, and later roles and
-        passwords; nothing else of it.  True if there was any.
+        """Apply removals, and later roles and passwords, that the standby recorded without contact;
+        nothing else of it.  True if there was any.
         """
         with self._store.write() as session:
             some = apply_tombstones(session, standby.ended)
@@ -183,7 +183,7 @@ class ReplicatedTables:
             return [row_of(entry) for entry in entries]
 
     def unknown_audit(self, rows: Sequence[Row]) -> list[Row]:
-        """Those that are not there yet."""
+        """Return the entries that are not here yet."""
         ids = [row["entry_id"] for row in rows]
         with self._store.read() as session:
             known = select(AuditEntry.entry_id).where(AuditEntry.entry_id.in_(ids))
@@ -191,7 +191,7 @@ class ReplicatedTables:
         return [row for row in rows if row["entry_id"] not in there]
 
     def add_audit(self, rows: Sequence[Row]) -> None:
-        """Those that are there already stay as they are."""
+        """Add audit entries; existing ones stay unchanged."""
         new = [{name: row[name] for name in row if name != _NUMBER} for row in rows]
         if new:
             with self._store.write() as session:

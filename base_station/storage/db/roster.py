@@ -1,4 +1,4 @@
-"""People, units and who wears which."""
+"""People, units, and the wearers of units."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class Roster:
         return person_lookup(self._known)(person_id)
 
     def known_people(self) -> dict[str, KnownPerson]:
-        """The same of everybody, by id."""
+        """Return all known people by id."""
         return dict(self._known)
 
     def shown(self, text: str) -> str:
-        """A text of the log, as people see it."""
+        """Return a text of the log with names in place of references."""
         return shown_text(text, self.known)
 
     def wearer(self, assignment: Assignment) -> KnownPerson:
@@ -105,7 +105,9 @@ class Roster:
         )
 
     def add_unknown_people(self, people: Mapping[str, KnownPerson]) -> None:
-        """Names of people by their ids, for a log of another station; who is known stays."""
+        """Add names of people by their ids, for a log of another station; known people stay
+        unchanged.
+        """
         with self._store.write() as session:
             for person_id, one in people.items():
                 if session.get(PersonRow, person_id) is None:
@@ -127,7 +129,7 @@ class Roster:
             return import_steps(_all_on_roster(session), listed)
 
     def import_people(self, listed: Sequence[ListedPerson]) -> list[ImportStep]:
-        """Add or change all of them, or none: UserError where a name stands for two people."""
+        """Add or change all listed people, or none: UserError where two people have the name."""
         written: list[PersonRow] = []
         with self._store.write() as session:
             on_roster = _all_on_roster(session)
@@ -150,7 +152,9 @@ class Roster:
         return steps
 
     def remove_person(self, person_id: str) -> bool:
-        """The name stays for what was before.  UserError while the person wears a unit."""
+        """Remove a person from the roster; the name stays for earlier records.  UserError while the
+        person wears a unit.
+        """
         with self._store.write() as session:
             person = _on_roster(session, person_id)
             if person is None:
@@ -206,7 +210,7 @@ class Roster:
             ).all()
 
     def units(self) -> Sequence[tuple[Unit, Assignment | None]]:
-        """Every unit with who wears it now."""
+        """Return every unit with its present wearer."""
         with self._store.read() as session:
             rows = session.execute(
                 select(Unit, Assignment)
@@ -227,7 +231,7 @@ class Roster:
             return _worn_by(session, person_id)
 
     def worn_by_name(self) -> Sequence[tuple[str, str]]:
-        """Unit and person of what a record of an earlier version assigned, and is worn still."""
+        """Return unit and person of the present assignments that an earlier version recorded."""
         with self._store.read() as session:
             worn = select(Assignment.unit_id, Assignment.person_id).where(
                 Assignment.until_ns.is_(None), Assignment.person_name != ""
@@ -236,13 +240,15 @@ class Roster:
             return [(row[0], row[1]) for row in session.execute(known)]
 
     def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
-        """Those that held at some time of the window, oldest first."""
+        """Return the assignments that were valid at some time of the window, oldest first."""
         with self._store.read() as session:
             held = select(Assignment).where(*_held(from_ns, until_ns))
             return session.scalars(held.order_by(Assignment.from_ns)).all()
 
     def newest_assignments(self, from_ns: int, until_ns: int, limit: int) -> Sequence[Assignment]:
-        """Those that held at some time of the window, newest first (``pages.newest``)."""
+        """Return the assignments that were valid at some time of the window, newest first
+        (``pages.newest``).
+        """
         with self._store.read() as session:
             wanted = select(Assignment).where(*_held(from_ns, until_ns))
             return newest(session, wanted, Assignment.from_ns, Assignment.action_id, limit)

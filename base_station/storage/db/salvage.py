@@ -1,7 +1,7 @@
 """Sets a damaged database aside, and keeps readable rows that the log does not have.
 
-The damaged file stays beside the new one under a name with the time.  Cut short at any instant, the
-next start goes on: the new file is whole before the damaged one is renamed.
+The damaged file stays beside the new one under a name with the time.  After a kill at any instant
+the next start continues: the new file is complete before the damaged one is renamed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from shared.durable_names import sync_folder
 from shared.errors import DiskFullError, StoreError
 
 CHECK_S = 0.5  # for the tables that grow without end
-_STEPS = 10_000  # of SQLite's machine, between two looks at the clock
+_STEPS = 10_000  # of SQLite's virtual machine, between two checks of the clock
 _LARGE = (TrackPoint.__tablename__, IncidentTrails.__tablename__)
 ONLY_HERE = {
     "users": "users and their passwords",
@@ -126,7 +126,7 @@ def salvage_if_damaged(path: Path, patience_s: float = CHECK_S) -> Salvage | Non
 
 
 def damage_of(path: Path, patience_s: float = CHECK_S) -> str:
-    """In words; empty: none was found."""
+    """Return the damage in words; empty: none was found."""
     try:
         with reading_on_full_disk(path) as reading:
             return _damage_in(reading, patience_s)

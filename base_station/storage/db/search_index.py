@@ -1,7 +1,6 @@
-"""Index by which incidents are found: words of the place, people, and alarms.
-
-It is updated from the other tables at each search: from their changes since.  A person is in it by
-the id, whose name is in the roster alone.
+"""Index of the search for incidents: words of the place, people, and alarms.  Each search first
+updates it by the changes of the other tables.  A person is in it by the id, whose name is in the
+roster alone.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ _Term = tuple[str, str, str]  # incident, kind, value
 
 
 def words_of(text: str) -> set[str]:
-    """Words as they are compared: without case and accents."""
+    """Return the words of a text for comparison: without case and accents."""
     parts = unicodedata.normalize("NFKD", text.casefold())
     plain = "".join(part for part in parts if not unicodedata.combining(part))
     return set(_WORDS.findall(plain))
@@ -91,7 +90,7 @@ def index(session: Session, incident_ids: Sequence[str]) -> None:
 
 
 def _texts(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
-    """Words of names and dispatches, and whom these mention."""
+    """Return words of names and dispatches, and the people that these mention."""
     wanted = select(IncidentRow.incident_id, IncidentRow.name, DispatchRow.report).join_from(
         IncidentRow, DispatchRow, DispatchRow.number == IncidentRow.dispatch_number, isouter=True
     )

@@ -11,7 +11,7 @@ from base_station.storage.db.server_address import ServerAddress
 from shared.errors import StoreError
 
 LOCK_WAIT_S = 10  # another process (``muster base users add``) may be writing
-WRITERS_LOCK = 0x6D75_7374_6572_0001  # advisory, for one transaction: held by the writer
+WRITERS_LOCK = 0x6D75_7374_6572_0001  # advisory, held by the writer for one transaction
 STATION_LOCK = 0x6D75_7374_6572_0002  # advisory, of the one station that works on the database
 STATION_WAIT_S = 40  # until the server has found that a station before is gone
 _ALONE = "muster_alone"
@@ -81,7 +81,9 @@ def _connect_limited(
 
 
 def _begin(connection: Connection) -> None:
-    """As SQLite's BEGIN IMMEDIATE: what is read before a change is not changed by others."""
+    """Begin a transaction as SQLite's BEGIN IMMEDIATE does: no other writer changes rows that it
+    has read.
+    """
     if connection.get_execution_options().get(_ALONE):
         connection.exec_driver_sql(
             f"SET LOCAL lock_timeout = '{LOCK_WAIT_S}s'; "

@@ -1,7 +1,7 @@
 """The tables of a station on a PostgreSQL server.
 
-While the server is away no caller waits for it: each gets the reason at once, and one caller every
-two seconds tries whether it is back.
+While the server is away no caller waits for it: each gets the reason at once, and every two seconds
+one caller tries to connect.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from shared.errors import DatabaseAwayError, StoreError
 
 _log = logging.getLogger(__name__)
 
-RETRY_S = 2.0  # between two looks whether the server is back
-TRY_S = 10.0  # one look takes less
+RETRY_S = 2.0  # between two attempts to reach the server
+TRY_S = 10.0  # limit of one attempt
 OLDEST_SERVER = 140_000  # in the form of server_version_num: 14.0
 
 
@@ -181,7 +181,7 @@ class ServerStore:
 
     @contextmanager
     def _asking(self, what: str) -> Iterator[None]:
-        """Something is asked of the server.  Raises StoreError."""
+        """Context of a request to the server.  Raises StoreError."""
         is_trying = self._is_trying()
         try:
             if is_trying and self._is_station:
@@ -198,8 +198,8 @@ class ServerStore:
             self._away = ""
 
     def _is_trying(self) -> bool:
-        """True for the one caller who finds out whether the server is back; False where it is
-        there.  Raises DatabaseAwayError for all others.
+        """True for the one caller that tries to reach the server; False where it answers.  Raises
+        DatabaseAwayError for all other callers.
         """
         with self._lock:
             if not self._away:

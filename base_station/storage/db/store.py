@@ -1,6 +1,5 @@
-"""Opens the database, and gives out sessions that read or write.
-
-While its disk takes nothing, a live station works on a copy in memory (``memory_copy``).
+"""Database in a file, with sessions that read or write.  While the disk cannot be written, a live
+station works on a copy in memory (``memory_copy``).
 """
 
 from __future__ import annotations
@@ -37,8 +36,8 @@ from shared.errors import DiskFullError, DiskHangsError, StoreError
 
 _log = logging.getLogger(__name__)
 
-_LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
-_RETRY_S = 2.0  # how often a disk that takes nothing is tried again
+_LOOK_S = 0.5  # between two checks for a hanging disk, while waiting for another writer
+_RETRY_S = 2.0  # between two attempts to write to a disk that failed
 _ROOM_BYTES = 4_000_000  # with less the next changes would fill it again
 _CAN_BE_READ = (*NO_ROOM, *NOT_OURS)  # though it cannot be written
 
@@ -95,7 +94,7 @@ class Store:
 
     @property
     def is_away(self) -> bool:
-        """True if its disk does not answer just now."""
+        """True if its disk does not answer."""
         return self.hangs()
 
     @property
@@ -105,7 +104,7 @@ class Store:
 
     @property
     def in_memory(self) -> bool:
-        """True if the disk takes nothing, and what is changed waits for it."""
+        """True if the disk cannot be written: changes are in memory and wait for it."""
         return self._memory is not None
 
     @property
@@ -177,7 +176,7 @@ class Store:
                 self._memory.keep(changes)
 
     def check_disk(self) -> None:
-        """Go on in the file where its disk takes something again."""
+        """Return to the file if its disk can be written again."""
         if self.in_memory:
             with suppress(DiskHangsError), self._alone():
                 self._leave_memory_if_due()
@@ -216,7 +215,7 @@ class Store:
 
     @contextmanager
     def _readable(self) -> Iterator[Engine]:
-        """For one reader, who goes on in memory though the disk takes something meanwhile."""
+        """Return the database for one reader, who stays on the copy in memory until done."""
         memory = self._memory
         if memory is not None:
             with memory.kept_open() as is_open:
@@ -294,7 +293,7 @@ class Store:
             raise refusal from error
 
     def _leave_memory_if_due(self) -> None:
-        """Go back from memory to the disk, if it is time.  The caller is the only writer."""
+        """Return from memory to the disk, if an attempt is due.  The caller is the only writer."""
         memory, now_s = self._memory, time.monotonic()
         if memory is None or now_s - self._tried_s < _RETRY_S or self.hangs():
             return
@@ -319,7 +318,7 @@ class Store:
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
-        """Hold the right to write: there is no other writer."""
+        """Hold the lock of the one writer."""
         self._require_disk()
         while not self._writing.acquire(timeout=_LOOK_S):
             self._require_disk()

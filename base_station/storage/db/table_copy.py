@@ -23,7 +23,7 @@ def has_users(store: Database) -> bool:
 
 
 def copy_kept(source: Database, target: Database) -> None:
-    """Copy what no log can give again into tables that are empty, all or nothing."""
+    """Copy the tables that no log has into empty tables, all or nothing."""
     _copy(source, target, (one for one in _tables() if one.name not in _PROJECTED))
 
 
@@ -33,7 +33,7 @@ def copy_tables_of(source: Database, target: Database) -> None:
 
 
 def _tables() -> list[Table]:
-    """Those that others refer to come first."""
+    """Return the tables in an order in which referenced ones come first."""
     return Base.metadata.sorted_tables
 
 

@@ -1,7 +1,7 @@
 """Tombstones of users, sessions, tickets and API tokens that were removed, of forgotten people.
 
 Of two stations one may do this while the other is off, or cannot be reached, and leads later.  So
-what is over is kept by name, goes to both in either direction, and nothing brings it back.
+removed rows are kept by name and copied in both directions, and are never restored.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def end(
 
 
 def name_of(row: Base) -> str:
-    """Nothing else ever has it."""
+    """Return the name of a tombstone, which is unique."""
     match row:
         case User():
             return f"user {row.username} {row.created_ns}"

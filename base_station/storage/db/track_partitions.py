@@ -18,7 +18,7 @@ _TABLE = TrackPoint.__tablename__
 
 
 def make_partitions(session: Session, seconds: Iterable[int]) -> None:
-    """See that these times, in seconds since 1970, have partitions.  Only for the only writer."""
+    """Make the partitions of these times, in seconds since 1970.  Only for the one writer."""
     for year, month in sorted({_month_of(t_s) for t_s in seconds}):
         name = f"{_TABLE}_{year:04}_{month:02}"
         if session.scalar(text("SELECT to_regclass(:name)"), {"name": name}) is None:
