@@ -78,7 +78,7 @@ class Checkpoints:
             self._thin_out()
 
     def save_if_it_can(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
-        """Save, unless the disk has refused one before; a refusal is reported."""
+        """Save; where the disk does not take it, report that and set ``is_refused``."""
         try:
             self.save(t_ns, events_at_t, pipeline)
         except OSError as error:

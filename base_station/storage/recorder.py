@@ -146,8 +146,8 @@ class Recorder:
         return done and not self._failure and not self._writer.problem
 
     def continue_log(self, number: int, log_id: str) -> None:
-        """Continue the numbers of a log whose newest segment is lost; ``log_id`` counts where no
-        segment has one.
+        """Continue a log that had a segment of this number; ``log_id``: for where no segment is
+        left that has the log's id.
         """
         self._writer.continue_log(number, log_id)
 

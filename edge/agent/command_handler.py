@@ -83,7 +83,7 @@ class CommandHandler:
             state, detail = self._apply(command)
         else:
             state, detail = reply.state, reply.reason
-        # One that was ended and comes again waits for the wearer again.
+        # A command that was ended and is sent again waits for the wearer again.
         asks = state in UNANSWERED and command.kind in ANSWERED_BY_PRESS
         is_all_clear = command.kind is CommandKind.ALL_CLEAR and state in UNANSWERED
         ended = command.ended_command_id if is_all_clear else ""
@@ -102,12 +102,12 @@ class CommandHandler:
         return reply
 
     def end(self, command_id: str) -> None:
-        """Ask the button for an answer to this command, and to what repeats it, no more."""
+        """Stop waiting for the button to answer this command and its repeats."""
         for reply in self._answers_to(command_id):
             self._remember(msgspec.structs.replace(reply, awaits_wearer=False))
 
     def acknowledge(self) -> tuple[CommandReply, ...]:
-        """Answer everything that asked for the button, which the wearer has pressed."""
+        """Answer all commands that wait for the button, which the wearer has pressed."""
         replies = tuple(
             msgspec.structs.replace(
                 reply,
@@ -125,8 +125,8 @@ class CommandHandler:
         return replies
 
     def note_notified(self, command_id: str, signal: str = "") -> CommandReply | None:
-        """Answer that an output has notified the wearer; None where that is no news.  ``signal``:
-        how a LOCATE is signalled, by SOUND or by LIGHT alone.
+        """Answer that an output has notified the wearer; None where that was answered before.
+        ``signal``: how a LOCATE is signalled, by SOUND or by LIGHT alone.
         """
         reply = self._replies.get(command_id)
         is_louder = reply is not None and (reply.detail, signal) == (LIGHT, SOUND)
@@ -187,7 +187,7 @@ class CommandHandler:
 
     def _refusal(self, command: Command) -> str:
         """Reason that the unit does not execute the command; empty: it does."""
-        # By the station's own clock alone: a unit whose clock is wrong obeys all the same.
+        # By the station's clock alone, so that a unit with a wrong clock executes it too.
         if 0 < command.expires_utc_ns <= command.header.t_utc_ns:
             return coded("refused-expired", "it had expired when it was sent")
         match command.kind:

@@ -11,8 +11,8 @@ from shared.clock import NS_PER_S
 class Decimator:
     """Decimator that picks the first sample in each period, whatever the batching.
 
-    Periods lie on a fixed grid of time, so nothing drifts, and a clock that jumps in either
-    direction costs nothing.
+    Periods lie on a fixed grid of time, so that nothing drifts, and no sample is lost when the
+    clock jumps.
     """
 
     def __init__(self, rate_hz: float) -> None:
@@ -39,10 +39,9 @@ class Decimator:
 
 
 class OncePerPeriod:
-    """Decimator of what may itself come once a period; then it loses none of it.
-
-    The first one lies in the middle of its period, so that half a period of jitter or of drift
-    puts no two of them into one.
+    """Decimator of input that may have the same period, of which it then drops none.  The first
+    item lies in the middle of a period, so that half a period of jitter or drift never puts two
+    into one.
     """
 
     def __init__(self, rate_hz: float) -> None:

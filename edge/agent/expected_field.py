@@ -1,4 +1,4 @@
-"""Earth's magnetic field to be expected here: by the settings, then by the first good fix."""
+"""Expected magnetic field of the Earth, by the settings, then by the first good fix."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _PLACE_DIGITS = 2  # of degrees; over a kilometre the field hardly changes
 class ExpectedField:
     """Source of the expected field; reports a change at most twice.
 
-    Place and date are rounded, so that a replay, whose times are not quite the same, finds
-    the very same field.
+    Place and date are rounded, so that a replay, whose times differ a little, gives exactly the
+    same field.
     """
 
     def __init__(self, place: ApproximatePosition | None) -> None:

@@ -1,4 +1,4 @@
-"""Inertial sensor of a unit as its pipeline has it: data sheet, calibration and name."""
+"""Inertial sensor of a unit in its pipeline: data sheet, calibration and name."""
 
 from __future__ import annotations
 

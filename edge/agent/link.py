@@ -27,8 +27,8 @@ _LOST_CHECKS = 2  # without the link that was there: probe until the station is 
 _NO_SUBSCRIBER = (
     "no station listens to this unit: it is starting, or the unit has been revoked there"
 )
-_REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
-_CLOSING_S = 10.0  # a bus may take seconds where its link leads nowhere
+_REOPEN_AFTER_S = 15.0  # some sessions stop trying to reconnect
+_CLOSING_S = 10.0  # a bus may take seconds to close without a station
 
 
 class StationConnector(Protocol):
@@ -68,23 +68,23 @@ class Link:
         self._reported_linked: bool | None = None
         self._checks_unlinked = 0
         self._closing: Thread | None = None  # of the bus before
-        self._link_lost = False  # the link was lost: it makes no sense to try until it may be back
+        self._link_lost = False  # the link was lost: probe before it is opened again
         self._worker = Worker("link", self._step, "the link fails; trying again")
         self._worker.start()
 
     @property
     def is_working(self) -> bool:
-        """True while the thread holds the link or seeks it, as it does until ``close``."""
+        """True while the thread runs, which holds or opens the link until ``close``."""
         return self._worker.is_working
 
     @property
     def is_lost(self) -> bool:
-        """True from when the log says that there is no link until there is one."""
+        """True from the report that the link is gone until it is back."""
         return self._reported_linked is False
 
     def set_up(self, *, up: bool) -> None:
         """Bring the link up or down, soon."""
-        if self._wanted_up == up:  # as with most batches: waking would hurry the link's checks
+        if self._wanted_up == up:  # nearly always; waking would shorten the link's checks
             return
         logger.info("radio %s", "back" if up else "down")
         self._wanted_up = up
@@ -97,15 +97,13 @@ class Link:
                 self._bus.publish(key, payload, qos)
 
     def ask(self, selector: str, timeout_s: float, on_reply: ReplyHandler) -> None:
-        """Ask the station, ahead of live data, if there is a bus; see ``shared.bus``."""
+        """Query the station, ahead of live data, if there is a bus; see ``shared.bus``."""
         with self._using:
             if self._bus is not None:
                 self._bus.ask(selector, b"", timeout_s, on_reply, urgent=True)
 
     def close(self) -> None:
-        """Stop and close the bus; an answer to the station that hangs on the disk is left to the
-        end of the process.
-        """
+        """Stop and close the bus, without waiting for a query handler that hangs on the disk."""
         end_s = time.monotonic() + _CLOSING_S
         closed = self._worker.close(_CLOSING_S)
         if closed and self._closing is not None:
@@ -142,7 +140,7 @@ class Link:
         self._forget_bus()
         if (
             self._link_lost
-        ):  # closing what leads nowhere may take seconds, in which the link may be back
+        ):  # closing a bus without a station may take seconds, in which the link may be back
             self._closing = Thread(target=declared.close, name="link-closing", daemon=True)
             self._closing.start()
         else:
@@ -150,7 +148,7 @@ class Link:
         return True
 
     def _watch(self, bus: Bus) -> None:
-        """Check the link until it is no longer wanted, is lost, or did not come about in time."""
+        """Check the link until it is no longer wanted, is lost, or was not made in time."""
         checks_without = 0
         was_linked = False
         max_checks = _REOPEN_AFTER_S / _CHECK_S
@@ -165,7 +163,7 @@ class Link:
         logger.debug("opening the bus anew")
 
     def _is_reachable(self) -> bool:
-        """Probe for the station for as long as a look takes."""
+        """Probe for the station, for the time of one check."""
         self._link_lost = not self._station.is_reachable(_CHECK_S)
         if self._link_lost:
             self._report_state(None)
@@ -180,7 +178,7 @@ class Link:
             logger.info("linked to the station")
         elif self._checks_unlinked >= _CHECKS_UNTIL_REPORTED and self._reported_linked is not False:
             self._reported_linked = False
-            # Finding out takes seconds, in which the link may be back.
+            # Finding the reason takes seconds, in which the link may be back.
             Thread(target=self._report_reason, args=(bus is not None,), daemon=True).start()
 
     def _report_reason(self, is_linked: bool) -> None:

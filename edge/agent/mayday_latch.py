@@ -1,8 +1,7 @@
-"""Mayday on disk: it stays active, whatever becomes of the agent, until the wearer cancels it.
-
-A file that is there while the mayday is active; its text is for a person.  It gets its name when it
-is on the disk, and the folder is brought to the disk after each change: a power cut leaves the
-state before or the one after.  A thread of its own writes: the disk does not hold up the call.
+"""Latch of the mayday on disk: it stays active over restarts of the agent, until the wearer cancels
+it.  The latch is a file that exists while the mayday is active; its text is for a person.  The file
+is renamed when it is on the disk, and its folder is flushed after each change: a power cut leaves
+the state before or after.  A thread of its own writes, so that the disk does not delay the call.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from shared.worker import UNTIL_WOKEN, Worker
 
 logger = logging.getLogger(__name__)
 
-_CLOSE_TIMEOUT_S = 5.0  # a disk that hangs is left behind
+_CLOSE_TIMEOUT_S = 5.0  # then a disk that hangs is not waited for
 
 
 class MaydayLatch:

@@ -8,7 +8,7 @@ from shared.messages import Command, EventKind, Header, Message, UnitEvent
 
 
 class MaydayProgress:
-    """Maydays of one boot, by the unit's own messages and by what the station answers."""
+    """Maydays of one boot, from the unit's own messages and the station's answers."""
 
     def __init__(self) -> None:
         self._active: Header | None = None  # of the newest call, until it is cancelled
@@ -31,14 +31,14 @@ class MaydayProgress:
                 self.acknowledgement = ""
 
     def note_received(self, acknowledged_seq: int) -> None:
-        """Note up to which of the unit's messages the station has all."""
+        """Note the number up to which the station has all of the unit's messages."""
         if self._sent is not None and acknowledged_seq >= self._sent.seq:
             self._sent = None
             self.received += 1
 
     def is_acknowledged_by(self, command: Command) -> bool:
-        """True if the command is of the newest call: the station knew of the mayday by that
-        message or a later one.  It knows of none from before this boot, which called anew.
+        """True if the command acknowledges the newest call: the station had that message or a later
+        one of it.  False for a call of an earlier boot, as this boot has called again.
         """
         call = self._active
         return (
@@ -48,5 +48,5 @@ class MaydayProgress:
         )
 
     def note_acknowledged(self, command_id: str) -> None:
-        """The station has acknowledged the newest call."""
+        """Note that the station has acknowledged the newest call."""
         self.acknowledgement = command_id

@@ -1,7 +1,6 @@
-"""Commands of which the wearer is notified until they are answered or over; kept on disk, so that
-they outlive a restart of the agent.
-
-A thread of its own writes: the disk does not hold up a command.
+"""Open commands, of which the wearer is notified until they are answered or over.  They are stored
+on disk for a restart of the agent.  A thread of its own writes, so that the disk does not delay a
+command.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ logger = logging.getLogger(__name__)
 
 NOTIFIES_WEARER = ANSWERED_BY_PRESS | {CommandKind.ALARM_ACKNOWLEDGED}
 _MOST_KEPT = 100
-_CLOSE_TIMEOUT_S = 5.0  # a disk that hangs is left behind
+_CLOSE_TIMEOUT_S = 5.0  # then a disk that hangs is not waited for
 
 
 class OpenCommand(msgspec.Struct, frozen=True):
@@ -65,8 +64,8 @@ class OpenCommands:
         return self._read_fault
 
     def add(self, command: Command) -> None:
-        """Keep a command of a kind that the wearer is notified of; others are left out.  An order
-        that is sent again takes the place of what it repeats.
+        """Keep a command of a kind that the wearer is notified of; others are left out.  A repeat
+        replaces the order that it repeats.
         """
         if command.kind not in NOTIFIES_WEARER or command.command_id in self._commands:
             return
@@ -84,13 +83,13 @@ class OpenCommands:
         self._drop(tuple(self._commands))
 
     def close_one(self, command_id: str) -> None:
-        """Drop one that is over, and what repeats it; one that is not there is none."""
+        """Drop a command that is over, with its repeats; an unknown one changes nothing."""
         self._drop(
             tuple(one.command_id for one in self if command_id in (one.command_id, one.repeats))
         )
 
     def expire(self, utc_ns: int) -> None:
-        """Drop those whose time is over by the station's clock."""
+        """Drop commands that have expired by the station's clock."""
         self._drop(tuple(one.command_id for one in self if 0 < one.expires_utc_ns <= utc_ns))
 
     def close(self) -> None:
@@ -105,7 +104,7 @@ class OpenCommands:
             self._worker.wake()
 
     def _read(self) -> list[OpenCommand] | None:
-        """Return what the disk has; None where that cannot be read."""
+        """Return the commands on the disk; None where they cannot be read."""
         try:
             with read_own(self._path) as file:
                 return msgspec.json.decode(file.read(), type=list[OpenCommand])
@@ -126,7 +125,7 @@ class OpenCommands:
     def _save(self) -> None:
         """Bring the commands to the disk: a power cut leaves those before or those after.
 
-        What is there already is not written again: flash memory wears, and a start is no news.
+        Unchanged commands are not written again, as flash memory wears.
         """
         commands = list(self._commands.values())
         if commands == self._on_disk:

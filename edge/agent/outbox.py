@@ -1,8 +1,8 @@
 """Outbox of a unit: messages go into the journal first, then on the air.
 
-A thread of its own, because a disk may be slow to confirm a write.  Messages that wait together
-are committed together, at most every tenth of a second; an alert is committed immediately.
-Messages of one call are one transaction: after a sudden end all of them are there or none.
+A thread of its own, because a disk may be slow to confirm a write.  Messages that wait together are
+committed together, at most every tenth of a second; an alert is committed immediately.  Messages of
+one call are one transaction: after a crash all of them are in the journal or none.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ class Outbox:
             self._urgent.set()
 
     def close(self) -> None:
-        """Send everything that was put, then stop."""
+        """Send all queued messages, then stop."""
         self._waiting.put(None)
         self._urgent.set()
         self._worker.join()
 
     def _send_group(self) -> float:
-        """Commit and send what waits together."""
+        """Commit and send the waiting messages together."""
         first = self._waiting.get()
         self._urgent.wait(max(0.0, self._last_commit_s + _GROUP_S - time.monotonic()))
         self._urgent.clear()
@@ -84,7 +84,9 @@ class Outbox:
             return group
 
     def _send(self, group: list[JournalRow]) -> None:
-        """A bus that fails ends nothing: the link opens it anew, and the journal has the rest."""
+        """Send a message.  A bus that fails is reopened by the link, and the journal keeps the
+        message.
+        """
         for each in group:
             try:
                 self._publish(each.channel.key(self._unit_id), each.payload, each.channel.qos)
@@ -97,7 +99,7 @@ class Outbox:
 
 
 def _journal_rows(message: Message) -> list[JournalRow]:
-    """Return the row of a message; none, and a line in the log, where it cannot be encoded."""
+    """Return the row of a message; where it cannot be encoded, log that and return none."""
     header, channel = message.header, channel_of(message)
     try:
         return [JournalRow(header.seq, channel, header.t_utc_ns, encode(message))]

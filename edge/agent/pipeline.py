@@ -56,10 +56,10 @@ from shared.messages import (
 )
 
 LIVE = Timeline()
-_WORN_S = 20.0  # of motion, all in all
+_WORN_S = 20.0  # of motion in total
 _SIGHTED_MAX = 1000  # beacons whose sightings are limited one by one
 _ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
-_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # a tracker elsewhere cannot begin before it has received one
+_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # a tracking agent starts when it has received one
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +90,11 @@ class TrackerPipeline:
         worn_on: str = "",
         notes: tuple[str, ...] = (),
     ) -> None:
-        """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
-        of a unit that sends its samples and is tracked elsewhere.  ``foot_sensor``: name
-        of the sensor that the tracker needs on a foot.  ``worn_on``: place on the body that the
-        tracker assumes for a sensor without one; its inclination shows the posture.  ``notes``:
-        messages on the tracker and its sensors that are sent at the start.
+        """``mayday``: one was latched when the unit last ended suddenly.  ``raw_uplink``: of a unit
+        that sends its samples and is tracked elsewhere.  ``foot_sensor``: name of the sensor that
+        the tracker needs on a foot.  ``worn_on``: place on the body that the tracker assumes for a
+        sensor without one; its inclination shows the posture.  ``notes``: messages on the tracker
+        and its sensors that are sent at the start.
         """
         self._identity = identity
         self._sensors = UnitSensors(identity.sensors)
@@ -163,7 +163,7 @@ class TrackerPipeline:
     def take_presses(
         self, presses: Iterable[ButtonPress], timeline: Timeline = LIVE
     ) -> tuple[Message, ...]:
-        """Return what is sent of presses; no tracker or sensor has a part in it."""
+        """Return the messages of presses of the button; needs neither tracker nor sensor."""
         presses = tuple(presses)
         if presses:
             self._sensors.note_press()
@@ -219,12 +219,12 @@ class TrackerPipeline:
         self._positions.set_rate(rate_hz)
 
     def set_preflight(self, findings: tuple[PreflightFinding, ...]) -> UnitDescription:
-        """Set what the check at the start has found; return the description that says so."""
+        """Set the result of the check at the start; return the new description."""
         self._preflight = findings
         return self._describe(None)
 
     def set_journal_pending(self, pending: int) -> None:
-        """Set how many messages are not known to have arrived, for the next status."""
+        """Set the number of messages without a confirmed arrival, for the next status."""
         self._journal_pending = pending
 
     def _publish(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
@@ -275,7 +275,7 @@ class TrackerPipeline:
         return [] if found is None else [Temperature(self._header_factory.header(mono_ns), *found)]
 
     def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
-        """Publish the same thing at most once a second."""
+        """Publish a sighting, of the same beacon at most once a second."""
         key = (sample.kind, sample.seen_id)
         before_ns = self._sighted_ns.get(key)
         is_repeat = before_ns is not None and 0 <= sample.t_ns - before_ns < NS_PER_S
@@ -287,8 +287,8 @@ class TrackerPipeline:
         return [sighting(self._header_factory.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
-        """A mayday stays until the wearer cancels it.  Pressed again it is sent again, as an
-        operator may have resolved the first one.
+        """Apply a press of the button.  A mayday stays until the wearer cancels it; pressed again
+        it is sent again, as an operator may have resolved the first one.
         """
         if press.button == CANCEL:
             if not self._mayday:

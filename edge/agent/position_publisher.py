@@ -17,10 +17,10 @@ from shared.header_factory import HeaderFactory
 from shared.messages import MagneticNorth, Position
 from shared.path_noise import PathNoise
 
-_PRESSURE_KEPT_NS = 3 * NS_PER_S  # longer than a tracker may hold rows back
-_HEADING_BASE_M = 0.5  # a shorter way says little of its direction
+_PRESSURE_KEPT_NS = 3 * NS_PER_S  # longer than a tracker delays rows
+_HEADING_BASE_M = 0.5  # over a shorter distance the direction is inaccurate
 _STOREY_M = 3.0
-_NORTH_STD_MAX_RAD = 0.8  # of magnetic north: then it is not spoken of
+_NORTH_STD_MAX_RAD = 0.8  # of magnetic north; beyond that it is not published
 _STOREY_HYSTERESIS_M = 0.5
 
 
@@ -58,7 +58,7 @@ class PositionPublisher:
         for pair in zip(imu.t_ns.tolist(), imu.pressure_pa.tolist(), strict=True):
             if math.isfinite(pair[1]):
                 while self._pressures and pair[0] <= self._pressures[-1][0]:
-                    self._pressures.pop()  # a clock that went back
+                    self._pressures.pop()  # the clock was set back
                 self._pressures.append(pair)
 
     def push(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
@@ -84,7 +84,7 @@ class PositionPublisher:
         """Return for each picked row the worst quality and all reasons since the one picked
         before it.
 
-        What lasts for a few samples would otherwise fall between two positions.
+        Otherwise a fault of a few samples would be lost between two positions.
         """
         qualities = []
         start = 0
@@ -136,7 +136,7 @@ class PositionPublisher:
         )
 
     def _turn(self, north_m: float, east_m: float) -> None:
-        """The heading of travel is that of the last half metre."""
+        """Update the heading of travel, which is that of the last half metre."""
         moved_north_m = north_m - self._heading_from_m[0]
         moved_east_m = east_m - self._heading_from_m[1]
         if math.hypot(moved_north_m, moved_east_m) >= _HEADING_BASE_M:
@@ -144,13 +144,13 @@ class PositionPublisher:
             self._heading_from_m = (north_m, east_m)
 
     def _climb(self, height_m: float) -> None:
-        """Count storeys, with enough hysteresis that standing on a landing counts once."""
+        """Count storeys, with a hysteresis so that a landing counts once."""
         off_m = height_m - self.floors_climbed * _STOREY_M
         if abs(off_m) > 0.5 * _STOREY_M + _STOREY_HYSTERESIS_M:
             self.floors_climbed = round(height_m / _STOREY_M)
 
     def _pressure_at(self, t_ns: int) -> float | None:
-        """The last reading, unless it is of long ago: a barometer may fail on the way."""
+        """Return the last reading, unless it is too old: a barometer may fail."""
         after = bisect_right(self._pressures, (t_ns, math.inf))
         if not after:
             return None

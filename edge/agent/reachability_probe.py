@@ -1,8 +1,7 @@
-"""Probe that finds at once when a station that was out of reach takes connections again.
-
-A connection that is being made while the radio is away sends its first packet again after 1, 2, 4
-and more seconds, so it notices the radio's return late.  Here a new one is begun several times a
-second, and the first that comes about says that it is worth opening the bus.
+"""Probe that detects at once when a station takes connections again.  A connection attempt without
+radio repeats its first packet after 1, 2, 4 and more seconds, so it detects the radio's return
+late.  The probe begins a new attempt several times a second; when one succeeds, the bus can be
+opened.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ class ReachabilityProbe:
         self._next_s = 0.0
 
     def _begin_attempts(self) -> None:
-        """Begin a connection to each address of a name: a station may listen on one of them
+        """Begin a connection to each address of the names, as a station may listen on one of them
         only.
         """
         addresses = [found for place in self._places for found in _addresses(*place)]
@@ -53,7 +52,7 @@ class ReachabilityProbe:
             try:
                 attempt = socket.socket(family, kind, protocol)
             except OSError:
-                continue  # the machine knows no such network
+                continue  # no such network on this machine
             attempt.setblocking(False)
             if attempt.connect_ex(address) in (0, errno.EINPROGRESS):
                 self._attempts.append(attempt)

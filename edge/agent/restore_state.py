@@ -22,8 +22,8 @@ logger = logging.getLogger(__name__)
 def mayday_before(journal: Journal) -> bool:
     """Return True if a mayday was latched when the boot before this one ended suddenly.
 
-    A unit that was stopped in order has logged its stop, and starts afresh; one that has failed
-    had the time to log it, too, and is started again.
+    A unit that was stopped in order has logged that, and starts without a mayday.  One that failed
+    may have logged it too, and is started again.
     """
     for event in next(_boots(journal, EVENT), ()):
         assert isinstance(event, UnitEvent)
@@ -35,14 +35,13 @@ def mayday_before(journal: Journal) -> bool:
 
 
 def position_rate_before(journal: Journal, now_mono_ns: int) -> float | None:
-    """Return the rate that the station has set since the unit was switched on, if its agent was
-    not stopped since: the rate of another incident would surprise.
-
-    Monotonic time begins anew when a machine is switched on: a message with a later time than the
-    start that follows it is of the time before the machine was switched on.
+    """Return the rate that the station has set since the unit was switched on, if its agent was not
+    stopped since: the rate of an earlier incident must not stay.  Monotonic time restarts when a
+    machine is switched on: a message with a later time than the start that follows it is from
+    before that.
     """
     if not any(position_rate_of(answer) for answer in _answers(journal)):
-        return None  # most often: the starts since then need not be looked at one by one
+        return None  # mostly: then the starts need not be compared one by one
     began_ns = now_mono_ns
     for boot in _boots(journal, EVENT, REPLY):
         messages = list(boot)
@@ -63,7 +62,7 @@ def position_rate_before(journal: Journal, now_mono_ns: int) -> float | None:
 
 
 def answers_before(journal: Journal) -> list[CommandReply]:
-    """Return the unit's earlier answers to commands, oldest first, so that it does none of them
+    """Return the unit's earlier answers to commands, oldest first, so that it executes none of them
     again.
     """
     newest = islice(_answers(journal), 2 * REMEMBERED)  # a command has one or two, seldom more
@@ -84,7 +83,7 @@ def _boots(journal: Journal, *channels: Channel) -> Iterator[Iterator[Message]]:
 
 
 def _readable(journal: Journal, channels: tuple[Channel, ...]) -> Iterator[EarlierAlert]:
-    """Yield the alerts as far as the disk can be read: a unit must start in any case."""
+    """Yield the alerts that can be read from the disk: a unit must start in any case."""
     try:
         yield from journal.earlier_alerts(*channels)
     except StoreError as error:

@@ -1,8 +1,8 @@
 """Runtime loop of one unit: source to pipeline to journal to link, until stopped.
 
-One thread steps the pipeline, stamps what is sent and takes commands, so sequence numbers
-rise in the order of the journal.  Reading the source, writing the journal and holding the
-link have threads of their own: none of them keeps the unit from the rest.
+One thread steps the pipeline, numbers the messages and takes commands, so that sequence numbers
+rise in the order of the journal.  Reading the source, writing the journal and holding the link have
+threads of their own: none of them blocks the others.
 """
 
 from __future__ import annotations
@@ -62,14 +62,14 @@ _CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without
 
 
 class SelfTest(Protocol):
-    """Check of the unit at its start, beside all else; see ``edge.preflight.start_check``."""
+    """Check of the unit at its start, while it runs; see ``edge.preflight.start_check``."""
 
     def start(self, mono_ns: int) -> None: ...
 
     def push(self, batch: SensorBatch) -> None: ...
 
     def step(self, mono_ns: int) -> tuple[PreflightFinding, ...] | None:
-        """Return what is wrong or missing, where that is news."""
+        """Return new findings: faults and missing parts."""
         ...
 
 
@@ -156,8 +156,8 @@ class Agent:
             self._send_heartbeat()
 
     def _notify_ready(self) -> None:
-        """End the start, whose time is not limited, when the tracker is compiled: that takes a
-        slow machine longer than the watchdog waits.  A source that gives nothing is not waited for.
+        """Report the end of the start to the service manager when the tracker is compiled, which
+        may take longer than the watchdog allows.  A source without samples is not waited for.
         """
         if self._is_ready or not (self._tracked_s >= _COMPILED_S or self._is_over(_EARLY_NS)):
             return
@@ -167,7 +167,7 @@ class Agent:
     def _take_batch(self, timed: TimedBatch) -> None:
         parts = self._parts
         presses = tuple(one for one in timed.batch.others if isinstance(one, ButtonPress))
-        self._take_presses(presses, timed.timeline)  # before all that may fail
+        self._take_presses(presses, timed.timeline)  # first: the rest may fail
         raw = parts.raw.messages(timed.batch)
         parts.black_box.write(raw)
         self._timeline = timed.timeline
@@ -186,8 +186,8 @@ class Agent:
         parts.link.set_up(up=not down)
 
     def _step_pipeline(self, batch: SensorBatch, timeline: Timeline) -> None:
-        """A tracker that fails ends the agent, which is started again.  One that fails at each
-        start would leave no time to call a mayday: the rest goes on for a while then.
+        """Step the pipeline.  A tracker that fails ends the agent, which is started again.  If it
+        fails soon after the start, the button works on for a while, so that a mayday can be called.
         """
         parts = self._parts
         if self._failure is not None:
@@ -218,8 +218,8 @@ class Agent:
             parts.outbox.put((parts.pipeline.set_preflight(findings),))
 
     def _take_presses(self, presses: Iterable[ButtonPress], timeline: Timeline) -> None:
-        """Send what the wearer means by presses.  To cancel where no mayday is active is to
-        acknowledge, with a hasty thumb.
+        """Send the messages of presses.  A cancellation without an active mayday counts as an
+        acknowledgement.
         """
         parts = self._parts
         for press in presses:
@@ -279,7 +279,7 @@ class Agent:
         return self._parts.clock.monotonic_ns() - self._started_ns > after_start_ns
 
     def _report_storage_faults(self) -> None:
-        """Report each fault by itself: one that lasts hides none of the others."""
+        """Report each fault of the storage separately, so that a lasting one hides no other."""
         parts = self._parts
         faults = [
             parts.journal.damage,
@@ -327,7 +327,7 @@ class Agent:
             self._time_query_failed = False
 
     def _shut_down(self, reason: str) -> None:
-        """Send what is left, in order, and close everything."""
+        """Send the remaining messages, in order, and close everything."""
         parts = self._parts
         ended = parts.reader.ended
         with ExitStack() as last:  # each is closed, whatever the others do

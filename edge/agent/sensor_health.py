@@ -1,7 +1,5 @@
-"""Faults of the inertial sensor that last, for a person.
-
-Single bad samples are the tracker's business, which leaves them out and says so in the
-position's reasons.
+"""Monitor of lasting faults of an inertial sensor.  The tracker handles single bad samples: it
+leaves them out and names them in the position's reasons.
 """
 
 from __future__ import annotations
@@ -15,10 +13,10 @@ from shared.clock import NS_PER_S
 from shared.coded_text import coded
 
 _LASTING_NS = NS_PER_S
-_TURNING_RADPS = 0.5  # what the gyroscope changes by in a swing, and more
-_SHAKING_MPS2 = 2.0  # the same of the accelerometer
+_TURNING_RADPS = 0.5  # change of the gyroscope in a swing, at least
+_SHAKING_MPS2 = 2.0  # change of the accelerometer in a swing, at least
 _MOVED_NS = NS_PER_S // 5  # a swing or two
-_LONGEST_STEP_NS = NS_PER_S // 10  # a hole says nothing of what moved in it
+_LONGEST_STEP_NS = NS_PER_S // 10  # motion in a longer gap is unknown
 
 
 class SensorHealth:
@@ -103,12 +101,12 @@ class _Run:
 class _Hang:
     """Axis of one of the two sensors that repeats itself while the other sensor shows motion.
 
-    A coarse sensor that lies still repeats itself, too, and is well, and an axis that never showed
-    anything but zero was made so.
+    A coarse sensor at rest repeats its value too, and is no fault; neither is an axis that was
+    always zero.
     """
 
     def __init__(self, text: str, motion: float) -> None:
-        """``motion``: what the other sensor changes by while the unit moves, in its unit."""
+        """``motion``: change of the other sensor while the unit moves, in its unit."""
         self._text = text
         self._motion = motion
         self._axes = [_Axis(), _Axis(), _Axis()]

@@ -1,7 +1,5 @@
-"""Presence of a unit's inertial sensors: their clocks laid on each other, and which are gone.
-
-All is found from the samples' times and the order in which they come, so that a replay finds the
-same.
+"""Presence of a unit's inertial sensors, on a common clock.  It is computed from the samples' times
+and the order of arrival alone, so that a replay gives the same.
 """
 
 from __future__ import annotations
@@ -18,7 +16,7 @@ from shared.coded_text import Term, coded
 
 GONE_NS = 2 * NS_PER_S  # without a sample, while others give some
 _APART_NS = NS_PER_S  # by which samples that come together differ in time, on one clock
-_TOGETHER_BATCHES = 10  # one that came before more than these may have fallen silent
+_TOGETHER_BATCHES = 10  # a sensor without a sample in these may be gone
 _BATCHES_TO_TELL = 10  # in a row
 _SPREAD_NS = 3 * NS_PER_S // 10  # of these
 
@@ -35,7 +33,7 @@ class _Sensor:
 class SensorPresence:
     """State of the sensors of one unit; ``take`` each batch once, in the order in which they come.
 
-    The common clock is that of the sensor that came first, mostly.
+    The common clock is mostly that of the first sensor with samples.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
@@ -50,13 +48,14 @@ class SensorPresence:
 
     @property
     def leading(self) -> str:
-        """Name of the sensor by which the unit's own motion and time go."""
+        """Name of the sensor that gives the unit's motion and time."""
         return next(iter(self.present or self._sensors))
 
     def take(
         self, batch: SensorBatch, timeline: Timeline
     ) -> tuple[SensorBatch, Timeline, tuple[str, ...]]:
-        """Return batch and timeline on the common clock, and what is new, for a person.
+        """Return batch and timeline on the common clock, and new findings as sentences for a
+        person.
 
         Samples on a clock that is not known yet are left out.
         """
@@ -80,8 +79,8 @@ class SensorPresence:
         return batch, timeline, tuple(news)
 
     def _compare_clocks(self, batch: SensorBatch, sensor: _Sensor) -> list[str]:
-        """Lay the sensor's clock on that of the others, where its samples keep coming together with
-        much older or newer ones of theirs.
+        """Set the sensor's clock offset, where its samples arrive together with much older or newer
+        ones of the other sensors.
         """
         times_ns = [
             other.newest_ns
@@ -99,7 +98,7 @@ class SensorPresence:
         sensor.apart_ns.append(apart_ns)
         spread_ns = max(sensor.apart_ns) - min(sensor.apart_ns)
         if len(sensor.apart_ns) < _BATCHES_TO_TELL or spread_ns > _SPREAD_NS:
-            return []  # a backlog that is caught up comes nearer with each batch
+            return []  # while a backlog is caught up, the offset changes with each batch
         sensor.offset_ns += round(median(sensor.apart_ns))
         sensor.apart_ns.clear()
         side = "behind" if sensor.offset_ns > 0 else "ahead"
@@ -142,7 +141,7 @@ class SensorPresence:
 
 
 def _moved(batch: SensorBatch, timeline: Timeline, offset_ns: int) -> tuple[SensorBatch, Timeline]:
-    """Return both as by a clock that is ``offset_ns`` ahead."""
+    """Return batch and timeline by a clock that is ``offset_ns`` ahead."""
     imu = replace(batch.imu, t_ns=batch.imu.t_ns + offset_ns)
     others = tuple(replace(one, t_ns=one.t_ns + offset_ns) for one in batch.others)
     moved = replace(timeline, source_origin_ns=timeline.source_origin_ns + offset_ns)

@@ -1,7 +1,7 @@
 """Reader of a source in a thread of its own, so that a sensor that hangs blocks nothing else.
 
-What is read beside it (beacons, satellites) goes with the next batch; while a live source gives
-none, by itself.
+Samples of auxiliaries (beacons, satellites) go with the next batch; while a live source gives none,
+they go alone.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from shared.errors import MusterError
 
 logger = logging.getLogger(__name__)
 
-_QUEUE_SIZE = 32  # batches read before they are asked for
+_QUEUE_SIZE = 32  # batches read ahead
 _PUT_TIMEOUT_S = 0.1
 _SAME_CLOCK_NS = 10 * NS_PER_S  # sensors whose times differ by more are on clocks of their own
-_AUXILIARY_WAIT_NS = NS_PER_S  # without a batch, after which what is read beside waits no longer
+_AUXILIARY_WAIT_NS = NS_PER_S  # without a batch; then auxiliary samples wait no longer
 
 
 _NO_IMU = ImuBatch(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)))
@@ -94,18 +94,18 @@ class SourceReader:
         return tuple(chain.from_iterable(one.take_faults() for one in reporters))
 
     def last_presses(self) -> tuple[ButtonPress, ...]:
-        """Return presses of buttons beside the source that no batch has taken along, once closed:
-        of one that was pressed as the source or the agent failed.
+        """Return presses of auxiliary buttons that went with no batch; called after closing, for a
+        press while the source or the agent failed.
         """
         return tuple(one for one in self._take_auxiliary() if isinstance(one, ButtonPress))
 
     @property
     def ended(self) -> bool:
-        """True when the source has no more, and everything has been taken."""
+        """True when the source has ended, and all batches were taken."""
         return not self._thread.is_alive() and self._ready.empty()
 
     def close(self) -> None:
-        """Close the source; a driver that hangs is left behind."""
+        """Close the source, without waiting for a driver that hangs."""
         self._stop.set()
         self._source.close()
         for one in self._auxiliaries:
@@ -166,7 +166,7 @@ class SourceReader:
             yield TimedBatch(batch, timeline, (first_ns - self._first_t_ns) / NS_PER_S)
 
     def _timekeeper(self, sensor: str, first_ns: int) -> Timekeeper:
-        """Return the sensor's timekeeper: of several on one clock the same."""
+        """Return the sensor's timekeeper, which sensors on one clock share."""
         if sensor not in self._timekeepers:
             for other, newest_ns in self._newest_ns.items():
                 if abs(first_ns - newest_ns) < _SAME_CLOCK_NS:

@@ -9,8 +9,8 @@ from edge.samples import AmbientSample
 from shared.clock import NS_PER_S
 from shared.messages import SensorTemperature
 
-_CURRENT_NS = 5 * NS_PER_S  # an older reading is no longer that of now
-_STEP_DEGC = 5.0  # of a change that does not wait for its period
+_CURRENT_NS = 5 * NS_PER_S  # an older reading is not used
+_STEP_DEGC = 5.0  # change that is published at once
 
 Ambient = tuple[float, tuple[SensorTemperature, ...]]
 
@@ -26,7 +26,7 @@ class CurrentReadings:
             self._readings[sensor] = t_ns, degc
 
     def at(self, t_ns: int) -> tuple[SensorTemperature, ...]:
-        """Return those of now; what has come to an end is left out."""
+        """Return the current readings; old ones are left out."""
         return tuple(
             SensorTemperature(sensor, degc)
             for sensor, (read_ns, degc) in sorted(self._readings.items())
@@ -35,7 +35,7 @@ class CurrentReadings:
 
 
 class AmbientTemperature:
-    """Hottest of the sensors of the air: once a period, and at once after a step."""
+    """Highest reading of the air sensors: once a period, and at once after a step."""
 
     def __init__(self, rate_hz: float) -> None:
         self._times = Decimator(rate_hz)
@@ -43,7 +43,7 @@ class AmbientTemperature:
         self._published_degc = math.nan
 
     def push(self, sample: AmbientSample) -> Ambient | None:
-        """Return what is to be published: the hottest, and the readings of those with a name."""
+        """Return the sample to publish: the highest reading, and those of named sensors."""
         if not math.isfinite(sample.temperature_degc):
             return None
         self._readings.push(sample.sensor, sample.t_ns, sample.temperature_degc)

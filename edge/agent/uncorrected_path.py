@@ -1,12 +1,12 @@
 """Published path of the tracker, without retrospective corrections.
 
-A tracker corrects the foot's position by what it learns of the walk behind
-(``correction_tracking``): centimetres at every stance, the more the farther the start is; metres,
-while the foot stands, where a rest shows at last what the gyroscope's bias did.  For the position
-as seen from the start that is the best estimate.  A consumer that follows the walk step by step, as
-a base station does with satellite fixes, walls and pins, would take a correction for a step.  So
-the published path goes on from where it was.  Its distance from the best estimate is part of the
-reported covariance.
+A tracker corrects the foot's position by later evidence about the past walk
+(``correction_tracking``): by centimetres at every stance, more with the distance from the start; by
+metres where a rest shows the error of the gyroscope's bias.  For the position as seen from the
+start that is the best estimate.  A consumer that follows the walk step by step, as a base station
+does with satellite fixes, walls and pins, would take a correction for a step.  So the published
+path goes on from where it was.  Its distance from the best estimate is part of the reported
+covariance.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class UncorrectedPath:
     """
 
     def __init__(self) -> None:
-        self._last: Floats | None = None  # (1, 4) of the row before: place, and what was put right
-        self._last_m = np.zeros(2)  # where the path walked has come to
+        self._last: Floats | None = None  # (1, 4) of the row before: position and correction
+        self._last_m = np.zeros(2)  # end of the uncorrected path
 
     def take(self, track: TrackBatch) -> TrackBatch:
         """Return ``track``, whose rows are all finite, in a frame that follows no correction."""

@@ -36,7 +36,7 @@ class UnitSensors:
         return sensor == self._presence.leading
 
     def is_barometer(self, sensor: str) -> bool:
-        """True for the one sensor whose air pressure is taken: two barometers differ by metres."""
+        """True for the one sensor whose air pressure is used: two barometers differ by metres."""
         return sensor == self._barometer
 
     def take(
@@ -47,7 +47,7 @@ class UnitSensors:
         return on_common, its_timeline, [*news, *self._faults(batch)]
 
     def correct(self, sensor: str, imu: ImuBatch) -> ImuBatch:
-        """Return the samples of a sensor less the errors that its calibration knows."""
+        """Return the samples of a sensor, corrected by its calibration."""
         correction = self._corrections.get(sensor)
         return imu if correction is None else correction.push(imu)
 
@@ -57,8 +57,8 @@ class UnitSensors:
             monitor.note_press()
 
     def watch(self, sensor: str, imu: ImuBatch, track: TrackBatch) -> int:
-        """Let each monitor have its sensor's samples, and the path of the person; return the
-        falls that the leading one has confirmed.
+        """Pass each sensor's samples and the person's path to its monitor; return the falls that
+        the leading one has confirmed.
         """
         falls = 0
         for name, monitor in self._monitors.items():

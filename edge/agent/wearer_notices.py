@@ -1,4 +1,4 @@
-"""Notices that a unit's wearer is due now, from the state of the unit."""
+"""Notices to the wearer that the state of the unit requires now."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from edge.notifiers.signals import Notice, Signal
 from shared.messages import CommandKind
 
 PRE_ALERT_S, NO_MOTION_S = 20.0, 30.0  # without motion; the station's own, docs/concepts.md
-_LINK_LOST_S = 30.0  # a shadow of the building is no news
+_LINK_LOST_S = 30.0  # shorter losses, as behind walls, are not notified
 _BATTERY_LOW = 0.2
 
 _OF_COMMANDS = {

@@ -43,7 +43,7 @@ class WearerNotifier:
         self._linked_ns = clock.monotonic_ns()  # when there last was a link
 
     def start(self) -> None:
-        for command in self._open_commands:  # played before a restart: it is of then
+        for command in self._open_commands:  # restored after a restart
             once = command.kind is CommandKind.ALARM_ACKNOWLEDGED
             if once and self._handler.has_notified(command.command_id):
                 self._open_commands.close_one(command.command_id)
@@ -77,12 +77,12 @@ class WearerNotifier:
         return reply
 
     def acknowledge(self) -> tuple[CommandReply, ...]:
-        """Answer what asked for the button, and end its signals."""
+        """Answer the commands that wait for the button, and end their signals."""
         self._open_commands.close_answered()
         return self._handler.acknowledge()
 
     def note_sent(self, messages: Iterable[Message]) -> None:
-        """Note the unit's own messages: the wearer is notified of what becomes of a mayday."""
+        """Note the unit's own messages, for notices about the progress of a mayday."""
         self._maydays.note_own(messages)
 
     def step(self) -> tuple[CommandReply, ...]:
@@ -100,12 +100,12 @@ class WearerNotifier:
         self._open_commands.close()
 
     def _end(self, command_id: str) -> None:
-        """An order is over: the wearer has answered by radio, or the incident was closed."""
+        """End an order: the wearer has answered by radio, or the incident was closed."""
         self._open_commands.close_one(command_id)
         self._handler.end(command_id)
 
     def _end_evacuations(self, command_id: str) -> None:
-        """All of them: the all clear is the station's last word."""
+        """End all evacuations at an all clear."""
         open_ids = [
             one.repeats or one.command_id
             for one in self._open_commands

@@ -96,7 +96,7 @@ class SentCommand(msgspec.Struct):
         return any(map(self.awaits, self.deliveries.values()))
 
     def awaits(self, delivery: Delivery) -> bool:
-        """True if its state may still change by time."""
+        """True if the delivery still waits for an answer, and can expire."""
         state = self.state_of(delivery)
         if state in {"queued", "sent"}:
             return True

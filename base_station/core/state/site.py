@@ -36,8 +36,8 @@ class SiteState(msgspec.Struct):
 
     @property
     def placed_plan(self) -> Plan | None:
-        """Plan; None: it has no known position in the incident frame, because the first fix defined
-        that before there was a plan.
+        """Plan; None also where its position in the incident frame is unknown, because the first
+        fix defined that frame.
         """
         return None if self.anchor_by_gps else self.plan
 

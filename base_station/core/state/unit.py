@@ -104,8 +104,8 @@ class UnitState(MessageStream):
         return worn.name if worn else self.label or self.unit_id
 
     def names_at(self, t_ns: int | None) -> tuple[str, str | None]:
-        """Return the name for people at that time, and where the time is unknown, None and the name
-        of the other possible wearer, if there is one.
+        """Return the unit's name for people at that time.  Where the time is unknown (None), the
+        present one, and the name of the last other wearer, whom it may concern instead.
         """
         if t_ns is None:
             before = [one.name for one in self.wearer.former if one.name != self.name]

@@ -231,7 +231,9 @@ class Roster:
             return _worn_by(session, person_id)
 
     def worn_by_name(self) -> Sequence[tuple[str, str]]:
-        """Return unit and person of the present assignments that an earlier version recorded."""
+        """Return unit and person of the present assignments that an earlier version recorded, with
+        a name.
+        """
         with self._store.read() as session:
             worn = select(Assignment.unit_id, Assignment.person_id).where(
                 Assignment.until_ns.is_(None), Assignment.person_name != ""

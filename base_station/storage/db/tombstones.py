@@ -31,7 +31,7 @@ def end(
 
 
 def name_of(row: Base) -> str:
-    """Return the name of a tombstone, which is unique."""
+    """Return the name of a row's tombstone, which no other row ever has."""
     match row:
         case User():
             return f"user {row.username} {row.created_ns}"
