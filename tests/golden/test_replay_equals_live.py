@@ -14,38 +14,22 @@ from base_station.fusion import FUSERS
 from base_station.replay.playback import Playback, compare
 from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import command_view
-from shared.channels import OPERATOR, Qos, channel_of
-from shared.codec import decode, encode
+from shared.channels import OPERATOR, Qos
+from shared.codec import decode
 from shared.messages import (
-    STATION_ID,
     AlarmChange,
-    FusedPosition,
     OperatorAction,
 )
 from tests.rig.eventful_incident import incident
 from tests.rig.live_station import LiveStation, make_pipeline
-from tests.rig.station_script import Record, Script
+from tests.rig.logged_script import logged
+from tests.rig.station_script import Script
 from tests.rig.waiting import until
 
 
 @pytest.fixture(scope="module")
 def reported() -> Script:
     return incident()
-
-
-def logged(script: Script) -> list[Record]:
-    """The script's records as a live station would have logged them, decisions included."""
-    pipeline = make_pipeline()
-    again = Script(pipeline)
-    records: list[Record] = []
-    for t_ns, key, payload in script.records:
-        again.now_s = (t_ns - script.records[0][0]) / 1e9
-        records.append((t_ns, key, payload))
-        for output in again.record(key, payload):
-            if isinstance(output, AlarmChange | FusedPosition):
-                decided = channel_of(output).key(STATION_ID)
-                records.append((output.header.t_utc_ns, decided, encode(output)))
-    return records
 
 
 def test_scripted_incident_covers_the_alarm_rules(reported: Script) -> None:

@@ -14,16 +14,14 @@ def digest() -> str:
     """Digest of all decisions, of the saved state and of the picture of consoles."""
     from base_station.storage.db.known_people import person_lookup  # noqa: PLC0415
     from base_station.views.station import StationFacts, snapshot  # noqa: PLC0415
-    from tests.golden import test_pins_replay, test_replay_equals_live  # noqa: PLC0415
     from tests.rig.eventful_incident import incident  # noqa: PLC0415
+    from tests.rig.logged_script import logged  # noqa: PLC0415
+    from tests.rig.pinned_walk import pinned_walk  # noqa: PLC0415
 
     reported = hashlib.sha256()
     everything = incident()
-    for records in (
-        test_replay_equals_live.logged(everything),
-        test_pins_replay.logged(test_pins_replay.reported()),
-    ):
-        for t_ns, key, payload in records:
+    for script in (everything, pinned_walk().script):
+        for t_ns, key, payload in logged(script):
             reported.update(f"{t_ns} {key} ".encode() + payload)
     reported.update(everything.pipeline.checkpoint())
     shown = snapshot(everything.pipeline.state, 1, StationFacts(), person_lookup({}), None)
