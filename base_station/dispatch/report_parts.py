@@ -37,7 +37,7 @@ class ReportParts:
 
     @property
     def warning_codes(self) -> tuple[TextCode, ...]:
-        """Of ``warnings``, in their order."""
+        """Codes of ``warnings``, in their order."""
         return tuple(map(code_of_text, self._first_warnings()))
 
     def _first_warnings(self) -> tuple[str, ...]:
