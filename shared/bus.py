@@ -1,10 +1,10 @@
-"""The port to the message bus.  ``bus_memory`` and ``bus_zenoh`` implement it; one contract
-suite runs over both.
+"""Interface of the message bus, implemented by ``bus_memory`` and ``bus_zenoh``; one contract suite
+runs over both.
 
-Threading: handlers are called from a thread of the bus, one call at a time for a
-subscription; a handler copies what it needs and returns at once.  Publishing is thread-safe,
-never blocks for the network, and says nothing of arrival: without a link the bytes are gone,
-and the journal is what brings them.
+Threading: handlers are called from a thread of the bus, one call at a time for a subscription; a
+handler copies what it needs and returns at once.  Publishing is thread-safe, never blocks for the
+network, and gives no confirmation of arrival: without a link the bytes are lost, and are fetched
+from the journal later.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ ReplyHandler = Callable[[bytes | None], None]  # each reply, and None when there
 
 class Subscription(Protocol):
     def close(self) -> None:
-        """After it returns the handler is not called again."""
+        """End it; after that the handler is not called again."""
         ...
 
 
 class Bus(Protocol):
     def publish(self, key: str, payload: bytes, qos: Qos, *, remote_only: bool = False) -> None:
-        """``remote_only``: this end's own subscriptions are not given it."""
+        """Publish a payload; ``remote_only``: not to this end's own subscriptions."""
         ...
 
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
-        """Key expressions as in Zenoh: ``*`` one chunk, ``**`` any number."""
+        """Subscribe to a key expression as in Zenoh: ``*`` is one chunk, ``**`` any number."""
         ...
 
     def declare_alive(self, key: str) -> Subscription:
@@ -40,7 +40,7 @@ class Bus(Protocol):
         ...
 
     def watch_alive(self, key_expression: str, handler: LivelinessHandler) -> Subscription:
-        """Hear of tokens that are there, appear and vanish."""
+        """Watch liveliness tokens: present ones, new ones, and those that end."""
         ...
 
     def serve(self, key_expression: str, handler: QueryHandler) -> Subscription:
@@ -48,7 +48,7 @@ class Bus(Protocol):
         ...
 
     def query(self, selector: str, payload: bytes, timeout_s: float) -> Iterable[bytes]:
-        """Ask and yield replies as they come; with no one to answer, nothing."""
+        """Send a query and yield replies as they come; none where nothing answers."""
         ...
 
     def ask(
@@ -62,12 +62,12 @@ class Bus(Protocol):
     ) -> None:
         """As ``query``, without waiting: ``on_reply`` is called by a thread of the bus.
 
-        An ``urgent`` question and its replies go ahead of live data, any other behind it.
+        An ``urgent`` query and its replies go ahead of live data, any other behind it.
         """
         ...
 
     def is_linked(self) -> bool:
-        """True if another end is there at this moment, as far as this one has noticed."""
+        """True if another end is connected, as far as this one has detected."""
         ...
 
     def has_subscriber(self, key: str) -> bool:

@@ -1,4 +1,4 @@
-"""A bus inside one process, for tests and rehearsals: the same order of things every time."""
+"""Bus inside one process, for tests and rehearsals, with a fixed order of deliveries."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class EndpointRole(Enum):
 
 @dataclass(slots=True, eq=False)
 class Declaration:
-    """One declaration of an endpoint, by the router's book."""
+    """Declaration of an endpoint, as the router keeps it."""
 
     owner: MemoryBus
     role: EndpointRole
@@ -46,7 +46,7 @@ class Declaration:
 
 
 class MemoryRouter:
-    """Joins the endpoints attached to it.
+    """Router that connects the endpoints attached to it.
 
     Deliveries go in the order of publishing, then of subscribing.  A router delivers inside
     ``publish``; one made with ``pumped=True`` keeps everything until ``pump``.  What a handler
@@ -61,17 +61,16 @@ class MemoryRouter:
         self._delivering = False
 
     def attach_station(self) -> MemoryBus:
-        """A new endpoint, linked, that reaches every other."""
+        """Attach a linked endpoint that reaches every other."""
         return MemoryBus(self, is_station=True)
 
     def attach_unit(self) -> MemoryBus:
-        """A new endpoint, linked, that reaches the stations: units do not hear each other."""
+        """Attach a linked endpoint that reaches the stations only, no other unit."""
         return MemoryBus(self, is_station=False)
 
     def pump(self) -> int:
-        """Deliver everything that waits, and what comes of it; the number of deliveries.
-
-        Inside a handler, or while another thread delivers, it does nothing: that one goes on.
+        """Deliver everything that waits, and what handlers publish meanwhile; returns the number of
+        deliveries.  Inside a handler, or while another thread delivers, it does nothing.
         """
         count = 0
         while True:
@@ -182,7 +181,7 @@ class MemoryBus:
         return self._linked and other._linked and (self._is_station or other._is_station)
 
     def link_down(self) -> None:
-        """Cut the link: what is published is gone, nothing arrives, tokens vanish."""
+        """Cut the link: published bytes are lost, nothing arrives, and tokens end."""
         self._linked = False
         self._router.links_changed()
 

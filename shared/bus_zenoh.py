@@ -37,9 +37,9 @@ __all__ = ["ClientEndpoint", "Endpoint", "StationEndpoint", "UnitEndpoint", "Zen
 
 logger = logging.getLogger(__name__)
 
-_SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
+_SAMPLES_WAITING = 65_536  # of one subscription; with more the link waits
 _QUERIES_WAITING = 1024
-_REPLIES_WAITING = 1024  # to one question
+_REPLIES_WAITING = 1024  # to one query
 _PLACE_IN_ZENOH = re.compile(r"\s+at \S+\.rs:\d+\.?")  # left out of messages for people
 _ENDING_S = 2.0  # for a thread to see that its channel has ended; a handler may be slow
 
@@ -56,7 +56,7 @@ class ZenohBus:
     """
 
     def __init__(self, endpoint: Endpoint) -> None:
-        """Raises BusError when the endpoint cannot be opened or makes no sense."""
+        """Raises BusError when the endpoint cannot be opened or is not valid."""
         zenoh.init_log_from_env_or("error")
         try:
             config = zenoh.Config.from_json5(json.dumps(settings_of(endpoint)))
@@ -111,7 +111,7 @@ class ZenohBus:
         queryable = self._session.declare_queryable(
             key_expression, zenoh.handlers.FifoChannel(_QUERIES_WAITING)
         )
-        # A thread of its own: making the replies must not hold up what else the link brings.
+        # A thread of its own: making the replies must not delay other data of the link.
         self._start_thread("bus-queries", partial(_answer, queryable, gate))
         return _Declared(gate, queryable)
 
@@ -173,8 +173,8 @@ class ZenohBus:
                 thread.join(_ENDING_S)
 
     def _publisher(self, key: str, qos: Qos, *, remote_only: bool) -> zenoh.Publisher:
-        """Kept for as long as the session: what is declared travels as a number instead of its
-        key, and the router, which looks for way and rights once, spends less than half on it.
+        """Return the publisher of a key, which is kept as long as the session: a declared key
+        travels as a number, and the router checks route and rights once, which halves its work.
         """
         urgent = qos is Qos.ALERT
         return self._session.declare_publisher(
@@ -221,10 +221,9 @@ def _token(gate: HandlerGate, sample: zenoh.Sample) -> None:
 def _deliver_samples(
     subscriber: zenoh.Subscriber[_Samples], deliver: Callable[[zenoh.Sample], None]
 ) -> None:
-    """Until the subscription ends.  The link's own thread would have to wait for the interpreter
-    with every sample, milliseconds where another thread is at work, and what comes meanwhile
-    is dropped at the far end.  So samples wait on this side, and all that are there are taken
-    in one go.
+    """Deliver samples until the subscription ends.  The link's own thread would wait for the
+    interpreter at every sample, for milliseconds while another thread works, and the far end drops
+    data meanwhile.  So samples are queued on this side and taken together.
     """
     samples = subscriber.handler  # the subscriber itself could not be closed while it receives
     with suppress(zenoh.ZError):
@@ -249,13 +248,13 @@ def _answer(queryable: zenoh.Queryable[_Queries], gate: HandlerGate) -> None:
             try:
                 for reply in gate.replies(key, str(query.parameters), payload):
                     query.reply(key, reply)
-            except zenoh.ZError as error:  # who asked has gone, or the link
+            except zenoh.ZError as error:  # the querier or the link is gone
                 logger.debug("an answer under %s does not get away: %s", key, error)
 
 
 def _deliver_replies(replies: _Replies, on_reply: ReplyHandler) -> None:
-    """Until no more come; in a thread of its own for the same reason: live data comes over the
-    same link, behind the replies.
+    """Deliver replies until no more come, in a thread of its own for the same reason: live data
+    comes over the same link.
     """
     try:
         with suppress(zenoh.ZError):

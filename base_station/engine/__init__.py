@@ -1,1 +1,1 @@
-"""Engine: the one thread that takes events, logs and applies them, and publishes."""
+"""Engine: the one thread that receives events, logs and applies them, and publishes."""

@@ -1,4 +1,4 @@
-"""Operator actions on their way into the log and the live state."""
+"""Queue of operator actions for the log and the live state."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class Admission(Enum):
     ACCEPT = "keep"
     ACCEPT_URGENT = "urgent"  # keep it, and flush it to the disk before its effects are published
     FORGED = "forged"  # a sender claims to be the station
-    RESTART_STORM = "wild"  # of a program that starts again and again, as none does
+    RESTART_STORM = "wild"  # of a program that starts more often than is possible
 
 
 def classify(key: str, event: StationEvent, state: StationState) -> Admission:
@@ -39,16 +39,16 @@ def classify(key: str, event: StationEvent, state: StationState) -> Admission:
 
 
 def mark_missing(number: MessageNumber | None, state: StationState) -> None:
-    """Mark a message as missing that the log did not take or has lost: its unit keeps it, and it is
-    fetched when there is room.
+    """Mark a message as missing that the log did not take or has lost: it is fetched from its
+    unit's journal when there is room.
     """
     if number is not None and (sender := state.sender(number[0])) is not None:
         sender.mark_missing(*number[1:])
 
 
 def _reason_to_drop(event: StationEvent, state: StationState) -> Admission | None:
-    """``DUPLICATE`` where the message came before: on two ways, sent again by the network, or
-    replayed; ``RESTART_STORM`` where there are more starts of its sender than can be.
+    """Return ``DUPLICATE`` for a message that came before: over two links, repeated by the network,
+    or replayed; ``RESTART_STORM`` where its sender has more starts than are possible.
     """
     number = number_of(event)
     if number is None:

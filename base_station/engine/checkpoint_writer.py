@@ -15,7 +15,7 @@ PART = "checkpoint"
 
 
 class CheckpointWriter:
-    """All of it is for one thread, which never waits but in ``finish``."""
+    """Writer for one thread, which waits only in ``finish``."""
 
     def __init__(self, log: Log, checkpoints: Checkpoints, health: HealthMonitor) -> None:
         self._log = log
@@ -56,5 +56,5 @@ class CheckpointWriter:
             self._health.report_bug(PART, error)
 
     def _save(self, log_position: tuple[int, int], state: bytes) -> None:
-        if self._log.flush():  # it must not have events that a crash would take from the log
+        if self._log.flush():  # it must not have events that the log would lose in a crash
             self._checkpoints.save(*log_position, state)

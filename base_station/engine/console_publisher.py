@@ -1,4 +1,4 @@
-"""Console publisher: sends what changed in a pipeline since the last delta, or a whole snapshot.
+"""Console publisher: sends the changes in a pipeline since the last delta, or a whole snapshot.
 
 Live and replay both use it.
 """
@@ -52,7 +52,7 @@ class ConsolePublisher:
         self.use_pipeline(pipeline)
 
     def use_pipeline(self, pipeline: StationPipeline) -> None:
-        """Go on with another pipeline; the next ``publish_delta`` or ``reset`` sends it."""
+        """Continue with another pipeline; the next ``publish_delta`` or ``reset`` sends it."""
         self._pipeline = pipeline
         self._trails = TrailEncoder()
         self._units: dict[str, None] = {}  # an ordered set
@@ -157,7 +157,9 @@ class ConsolePublisher:
         return self._new_snapshot(replay)
 
     def _backfilled_trails(self) -> Mapping[str, msgspec.Raw]:
-        """Some at a time, and those of a second together: a gap is filled over seconds."""
+        """Return a bounded number of backfilled trails, with the points of a second together, as a
+        gap is filled over seconds.
+        """
         units = self._pipeline.state.units
         now = list(self._trails_due)[:TRAILS_PER_DELTA]
         for unit_id in now:

@@ -1,5 +1,5 @@
-"""Console recorder: writes the pictures of consoles to the log, so that a replay plays them again
-and decides nothing.
+"""Console recorder: writes the messages to consoles into the log, so that a replay can play them
+without deciding again.
 
 While an incident is open a delta goes to the log once a second, and at once with an alarm, an order
 or a pin; a snapshot with all trails every two minutes, and whenever consoles get a new one.
@@ -21,7 +21,7 @@ from shared.clock import NS_PER_S
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, TRAIL_TOPIC
 
 DELTA_NS = NS_PER_S
-KEYFRAME_NS = 120 * NS_PER_S  # a seek reads so much of the log at most
+KEYFRAME_NS = 120 * NS_PER_S  # of log that a seek reads at most
 
 
 class ConsoleRecorder:
@@ -37,10 +37,10 @@ class ConsoleRecorder:
         self.publisher = ConsolePublisher(pipeline, self, reference_person)
 
     def record(self, *, at_once: bool = False) -> None:
-        """Call it again and again; ``at_once``: behind an operator's action."""
+        """Record a delta if one is due; ``at_once``: after an operator's action."""
         if not self._is_wanted:
             return
-        if self._log.is_behind:  # the room in memory is for events, which cannot be made again
+        if self._log.is_behind:  # its memory is for events, which cannot be computed again
             self._keyframe_due_ns = 0
             return
         t_ns = self._pipeline.state.t_ns
@@ -51,7 +51,7 @@ class ConsoleRecorder:
 
     @property
     def _is_wanted(self) -> bool:
-        """While an incident is open, and once when it is closed."""
+        """True while an incident is open, and once when it is closed."""
         state = self._pipeline.state
         if state.open_incidents:
             self._is_recorded = False

@@ -1,4 +1,4 @@
-"""Pace of deltas for consoles: as often as they can be followed, while that costs little."""
+"""Pace of deltas for consoles: as frequent as is useful, within a share of processor time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class DeltaPace:
         often_ns = min(spent_ns * OFTEN_SHARE, USUAL_NS)
         interval_ns = max(SHORTEST_NS, often_ns, spent_ns * MOST_SHARE)
         late_ns = now_ns - self.due_ns
-        # Counted from when it was due: a busy machine sends each late, and else sent fewer.
+        # Counted from the due time: otherwise a busy machine would send fewer.
         from_ns = self.due_ns if 0 <= late_ns < interval_ns else now_ns
         self.due_ns = from_ns + interval_ns
         self.urgent_due_ns = now_ns + interval_ns // 2

@@ -50,12 +50,12 @@ from shared.worker import Worker
 
 TICK_NS = NS_PER_S
 SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
-STALLED_NS = 5 * NS_PER_S  # between two turns: the machine did not let the station run
-RECEIVE_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
-CHECKPOINT_NS = 15 * NS_PER_S  # that a restart steps at most; at 1,000 events/s a second's work
-CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
-REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
-MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
+STALLED_NS = 5 * NS_PER_S  # between two rounds: the machine was suspended or overloaded
+RECEIVE_FIRST_NS = 2 * NS_PER_S  # before the next tick after a stall, for its links
+CHECKPOINT_NS = 15 * NS_PER_S  # of log that a restart applies: a second's work at 1,000 events/s
+CHECKPOINTS_SHARE = 100  # at most a hundredth of the engine's time is for checkpoints
+REBUILT_NS = 5 * 60 * NS_PER_S  # of log between checkpoints at a start
+MANY_STEPPED = 1000  # events at a start, after which a checkpoint is written at once
 FINISH_NS = 2 * NS_PER_S  # at the end, for records that wait in the feed
 STOP_TIMEOUT_S = 10.0
 
@@ -74,10 +74,10 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class _Due:
-    """Monotonic times at which something is to be done next."""
+    """Monotonic times at which work is due next."""
 
     tick_ns: int
-    sooner_tick_ns: int  # where there are changes
+    sooner_tick_ns: int  # where links are gone
     checkpoint_ns: int
 
 
@@ -125,7 +125,7 @@ class StationEngine:
         self._worker.start()
 
     def stop(self) -> None:
-        """Finish all events that were taken, and end."""
+        """Finish all received events, and end."""
         self._worker.stop()
         self._ports.feed.wake()
         self._worker.join(STOP_TIMEOUT_S)
@@ -149,7 +149,7 @@ class StationEngine:
         return self._worker.stopping.is_set() and not self._worker.is_alive
 
     def save_soon(self) -> None:
-        """Write a checkpoint at once: those on the disk are gone."""
+        """Write a checkpoint at once, because those on the disk were deleted."""
         self._due.checkpoint_ns = 0
         self._ports.feed.wake()
 
@@ -159,7 +159,7 @@ class StationEngine:
         self._ports.feed.wake()
 
     def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
-        """Take people and markers of other teams; of a flood the newest stay."""
+        """Queue people and markers of other teams (``ExternalQueue``)."""
         self._external.put(markers, removed)
         self._ports.feed.wake()
 
@@ -219,7 +219,7 @@ class StationEngine:
                     self._admit(t_ns, key, payload)
             except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
                 self._health.report_bug("drive", error)
-        if not follows:  # on half a log the effect of an action is unknown
+        if not follows:  # a follower's log may end before the events that an action needs
             self._take_actions()
             self._external.apply_waiting(self._actions.not_before_ns)
             self._deliveries.admit_waiting(self._admit)
@@ -236,7 +236,7 @@ class StationEngine:
             before_ns = time.thread_time_ns()
             try:
                 self._publish()
-            finally:  # where it cannot be published, too
+            finally:  # also after an error
                 pace.note_sent(now_ns, time.thread_time_ns() - before_ns)
         while self._snapshot_requests:
             snapshot = (
@@ -252,7 +252,7 @@ class StationEngine:
         if now_ns - last_run_ns > STALLED_NS and not self._receives_first:
             # Else all units would be lost: their messages could not be received meanwhile.
             due.tick_ns = due.sooner_tick_ns = now_ns + RECEIVE_FIRST_NS
-            self._receives_first = True  # once: time advances, however slow each round is
+            self._receives_first = True  # once, so that time advances in slow rounds too
         is_due = now_ns >= due.tick_ns
         if is_due:
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
@@ -260,7 +260,7 @@ class StationEngine:
         if is_due or (unlinked - self._unlinked and now_ns >= due.sooner_tick_ns):
             self._unlinked = unlinked
             due.sooner_tick_ns = now_ns + SOONER_TICK_NS
-            if not follows:  # else time passes by the other station's ticks
+            if not follows:  # else the other station's ticks advance the time
                 self._tick()
         if is_due:
             self._update_health()
@@ -300,7 +300,7 @@ class StationEngine:
         tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
         self._write_ahead.append_and_apply(t_ns, TICK.key(STATION_ID), encode(tick))
         self._report_problems()
-        is_behind = self._ports.log.is_behind  # and reported messages are perhaps in memory only
+        is_behind = self._ports.log.is_behind  # reported messages may then be in memory only
         if not (is_behind and self._ports.log.refuses):  # else fetched messages would be lost
             held = message_report(self._pipeline.state, self._ports.linked())
             self._ports.report(held, is_behind)

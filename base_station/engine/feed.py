@@ -15,7 +15,7 @@ from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError
 from shared.mcap_log import LogRecord
 
-_GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
+_GATHER_S = 0.004  # for more messages: waking a thread for each one costs too much
 _OVERFLOW_REPORTED_NS = 60 * NS_PER_S
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
@@ -47,7 +47,7 @@ class LiveFeed:
         self._late: deque[tuple[str, bytes]] = deque()
         self._late_bytes = 0
         self._late_pending = False  # of delivered records
-        self._all_taken = False  # and the engine has not come again since
+        self._all_taken = False  # and the engine has not taken again since
         self._woken = False
         self._closed = False
         self._overflowed_ns = 0
@@ -61,8 +61,8 @@ class LiveFeed:
 
     @property
     def late_waits(self) -> bool:
-        """True if anything that was delivered may not be in the log yet: it waits here, or the
-        engine took it and has not come for more.
+        """True if delivered records may not be in the log yet: they wait here, or the engine took
+        them and has not called ``take`` again.
         """
         return self._late_pending
 
@@ -72,7 +72,7 @@ class LiveFeed:
         return False
 
     def offer(self, key: str, payload: bytes) -> None:
-        """Callback for a bus: stamps the message with station time and returns at once."""
+        """Callback for a bus: give the message its station time, queue it, and return at once."""
         with self._changed:
             if self._has_room(1.0) or (_is_alert(key) and self._has_room(2.0)):
                 self._append(key, payload)
@@ -81,11 +81,11 @@ class LiveFeed:
                 self._overflowed_ns = self._clock.monotonic_ns()
 
     def deliver(self, key: str, payload: bytes) -> None:
-        """As ``offer``, for data that can wait: returns when little of it waits.  An alert that
-        comes this way has waited long enough: it goes with live data.
+        """As ``offer``, for data that can wait: returns when little of it waits.  An alert goes
+        with live data.
         """
         with self._changed:
-            if not self._has_late_room(1.0):  # and then for a good while, not for a record or two
+            if not self._has_late_room(1.0):  # then it waits for more room than for one record
                 self._changed.wait_for(lambda: self._has_late_room(0.5) or self._closed)
             self._late_pending, self._all_taken = True, False
             if _is_alert(key):
@@ -97,8 +97,8 @@ class LiveFeed:
                 self._changed.notify_all()
 
     def take(self, timeout_s: float) -> list[LogRecord]:
-        """Everything live that came, in order, and some of what can wait behind it; waits until
-        something comes, ``wake`` or the timeout.
+        """Return all live records in order, and some of those that can wait; waits until a record,
+        ``wake`` or the timeout.
         """
         with self._changed:
             self._late_pending = self._late_pending and not self._all_taken

@@ -31,12 +31,12 @@ class HealthMonitor:
         self._logged: dict[str, set[type[Exception]]] = {}  # by part, until it is well
 
     def report(self, part: str, text: str) -> None:
-        """Report a failure of this instant, which a later check would not see."""
+        """Report a momentary failure, which a later check would not find."""
         self._failed[part] = text
 
     @contextmanager
     def guard(self, part: str) -> Iterator[None]:
-        """Keep a bug in one event's handling from ending the station."""
+        """Catch and report errors, so that a bug in one event does not end the station."""
         try:
             yield
         except Exception as error:  # noqa: BLE001  # reported, and the station continues
@@ -58,8 +58,8 @@ class HealthMonitor:
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
         """``seen``: present problems, by part, empty where there is none; ``known``: problems that
-        were reported, perhaps by an earlier run of the program.  Parts that others watch are left
-        to them.
+        were reported, perhaps by an earlier run of the program.  Parts with a monitor of their own
+        are left out.
         """
         now = {**dict.fromkeys(_REPORTED_PARTS, ""), **seen, **self._failed}
         self._failed = {}
@@ -82,5 +82,7 @@ class HealthMonitor:
 
 
 def _without_numbers(text: str) -> str:
-    """The text without its counts: another problem is reported, and not every new number."""
+    """Return the text without its counts, so that only another problem is reported, not every new
+    number.
+    """
     return _NUMBER.sub("", text)

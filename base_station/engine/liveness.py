@@ -1,4 +1,4 @@
-"""Liveness of units' links by liveliness tokens: sooner than silence shows it."""
+"""Liveness of units' links by liveliness tokens, which end sooner than a timeout."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _WHY = "appears and vanishes on the bus many times a second"
 
 
 class LivenessMonitor:
-    """Monitor from its making until it is closed; any thread reads it."""
+    """Monitor that runs until it is closed; any thread may read it."""
 
     def __init__(self, bus: Bus, ban: Callable[[str, str], None], clock: Clock) -> None:
-        """``ban``: a unit that floods, and why, as half a sentence behind its name."""
+        """``ban``: function that bans a flooding unit, with the reason as text behind its name."""
         self._ban = ban
         self._clock = clock
         self._changes: dict[str, TokenBucket] = {}
@@ -35,7 +35,7 @@ class LivenessMonitor:
 
     @property
     def unlinked(self) -> frozenset[str]:
-        """Were there before."""
+        """Units that had a link before and have none now."""
         return self._unlinked
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from shared.mcap_log import LogRecord, log_id_of, read_log, segment_paths
 
 
 class RecordSource(Protocol):
-    """Whatever gives the records of a span of time."""
+    """Source of the records of a span of time."""
 
     def records(
         self,
@@ -60,13 +60,12 @@ class LogFeed(ABC):
 
     @abstractmethod
     def watch(self) -> Callable[[], bool]:
-        """Gives a function: True if a segment of now has been written anew since, or is gone."""
+        """Return a function that gives True if a present segment was rewritten or is gone."""
 
 
 class FolderFeed(LogFeed):
-    """The records of a folder, from every segment in turn, the one being written included.
-
-    Any thread may ask; each iterator is for one thread.
+    """Records of a folder, from every segment in turn, the open one included.  Any thread may call
+    it; each iterator is for one thread.
     """
 
     def __init__(
@@ -75,7 +74,7 @@ class FolderFeed(LogFeed):
         flush: Callable[[], object] = lambda: None,
         on_damage: Callable[[str], object] = lambda _: None,
     ) -> None:
-        """``flush`` brings what is still in memory to the disk (``Recorder.flush``); ``on_damage``
+        """``flush`` writes records in memory to the disk (``Recorder.flush``); ``on_damage``
         receives a sentence about each part that cannot be read.
         """
         self._folder = folder

@@ -1,10 +1,8 @@
-"""Adaptive size of the chunks asked of a unit, so that an answer never fills a thin link.
-
-Zenoh closes a link on which an answer waits for five seconds to be sent, and a queue of bulk data
-lets the keep-alives miss the lease of three: asked for too much, a thin link goes down before it
-has carried anything, again and again.  Its capacity is not known beforehand; so little is asked for
-first, and more as long as answers come quickly that bring about as much.  An answer that brings
-little is quick on any link.
+"""Adaptive size of the chunks requested from a unit, so that a reply never fills a slow link.
+Zenoh closes a link on which a reply waits for five seconds, and queued bulk data delays the
+keep-alives beyond the lease of three seconds.  So too large a request would close a slow link again
+and again.  Its capacity is unknown at first: the size starts small, and grows as long as replies of
+about that size come quickly.  Small replies do not count, as they are quick on any link.
 """
 
 from __future__ import annotations
@@ -23,12 +21,12 @@ class AdaptiveChunkSize:
         self.answer_bytes = LEAST_BYTES
 
     def note(self, came_bytes: int, took_ns: int) -> None:
-        """The last answer brought so much, and took this long."""
+        """Note the bytes and the duration of the last reply."""
         is_full = came_bytes >= _FULL_SHARE * self.answer_bytes
         most = 2 * self.answer_bytes if is_full else self.answer_bytes
         fitting = min(self.answer_bytes * _WANTED_NS // max(took_ns, 1), most)
         self.answer_bytes = max(LEAST_BYTES, min(fitting, MOST_BYTES))
 
     def note_timeout(self) -> None:
-        """No answer came at all."""
+        """Note that no reply came."""
         self.answer_bytes = LEAST_BYTES

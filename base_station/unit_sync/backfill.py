@@ -1,9 +1,8 @@
-"""Fetches messages that the radio lost from the units' journals (protocol: docs/journal.md).
-
-The drive reports about once a second the sequence numbers it has (``report``); one thread asks all
-the units for the rest, each one question at a time and by turns, a bounded number of them at once,
-and hands answers to the feed as they come.  Live data never waits for it: answers travel behind
-live data, and are handed over only while hardly anything waits there.
+"""Backfill: fetches messages that the radio lost from the units' journals (protocol:
+docs/journal.md).  The engine reports its sequence numbers about once a second (``report``).  One
+thread queries the units for the rest in turn: one query a unit, a bounded number of units at once.
+Replies go to the feed as they come.  Live data never waits for them: replies travel behind live
+data, and enter the feed only while it is nearly empty.
 """
 
 from __future__ import annotations
@@ -29,11 +28,11 @@ logger = logging.getLogger(__name__)
 
 AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES are asked
 _TIMEOUT_S = 10.0
-_MOST_CAME = 8  # times the requested size; the rest of a longer answer is not kept
-_LEAST_KEPT_BYTES = 131_072  # of an answer, however little was asked for
+_MOST_CAME = 8  # times the requested size; the rest of a longer reply is dropped
+_LEAST_KEPT_BYTES = 131_072  # of a reply, also to a small query
 
-_URGENT = "urgent"  # a question for alerts alone
-_FETCHING = ("range", _URGENT)  # questions that bring messages
+_URGENT = "urgent"  # a query for alerts alone
+_FETCHING = ("range", _URGENT)  # queries for messages
 _ALERT = "alert/"  # a key behind the unit begins so
 
 Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
@@ -49,7 +48,7 @@ class _Request(NamedTuple):
 
 
 class _Input(NamedTuple):
-    """Input of the thread since its last turn."""
+    """Input of the thread since its last round."""
 
     report: Report | None
     alerts_only: bool  # is to be fetched
@@ -183,7 +182,7 @@ class Backfill:
             self._turns.append(request.unit_id)
 
     def _ask_by_turns(self) -> None:
-        """Alerts are asked for at once, a backlog while not too many are being fetched."""
+        """Query for alerts at once, and for a backlog while not too many are being fetched."""
         for _ in range(len(self._turns)):
             unit_id = self._turns.popleft()
             question = self._journals[unit_id].next_question()

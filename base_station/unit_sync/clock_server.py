@@ -1,4 +1,4 @@
-"""Answers the units' requests for the station's time (see docs/clocks.md)."""
+"""Server of the station's time for units (see docs/clocks.md)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class ClockServer:
         self._leads = leads
 
     def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
-        """The two stamps stand as close to the bus as they can."""
+        """Reply with the times of receipt and sending, taken as close to the bus as possible."""
         del key, parameters, payload
         if not self._leads():
             return

@@ -1,11 +1,8 @@
-"""Sends commands to the units, again and again, until they answer or the command expires.
-
-The drive reports the unanswered commands once a second, and at once when there is a new one
-(``report``); a thread of this module publishes them on the bus.  The station receives its own
-messages there, and so the log has every time that a command was sent.  Nothing is sent to a unit
-that is away: it gets the command as soon as it is back.
-
-Names are put in on the way to the unit: the log has none.
+"""Sender of commands to the units, which repeats them until they are answered or expire.  The
+engine reports the open commands once a second, and at once when there is a new one (``report``); a
+thread of this module publishes them on the bus.  The station receives its own messages there, so
+the log has each sending of a command.  A unit without a link gets the command when it is back.
+Names are inserted for the unit only: the log has none.
 """
 
 from __future__ import annotations
@@ -92,7 +89,7 @@ class CommandSender:
         return _POLL_INTERVAL_S if orders else UNTIL_WOKEN
 
     def send_due(self, orders: Sequence[Order]) -> None:
-        """Send all that are due; one that cannot be sent does not hold up the others."""
+        """Send all due orders; one that cannot be sent does not delay the others."""
         now_ns = self._clock.monotonic_ns()
         sent_ns = {}
         failure: Exception | None = None

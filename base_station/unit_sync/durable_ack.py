@@ -1,4 +1,6 @@
-"""Durability of the acknowledgements to journals: they outlive a power cut of the station."""
+"""Durability of acknowledgements to journals: only messages that are safe from a power cut of the
+station are acknowledged.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +17,14 @@ class Disk(Protocol):
 
     @property
     def on_disk(self) -> int:
-        """So many of these, the first ones, are on the disk."""
+        """Number of the first of these that are on the disk."""
         ...
 
 
 class DurableAckGate:
-    """``note_report_received`` with each report, from one thread; any other asks."""
+    """Gate for acknowledgements; one thread calls ``note_report_received`` at each report, any may
+    read.
+    """
 
     def __init__(self, disk: Disk) -> None:
         self._disk = disk

@@ -1,10 +1,9 @@
-"""Client of one unit's journal: the received messages, and the next question.
-
-Pure: reports and answers in, questions out.  The index of the journal is asked for its newest runs
-of the unit's program, and for more as far as the link carries the answer: there may be thousands.
-Alerts are asked for as soon as a number is missing; the rest when it has been missing for a whole
-report, newest first and in pieces that the link carries.  Messages that are durable on the
-station's disk are acknowledged, so that the unit may delete them when it needs the room.
+"""Client of one unit's journal: received messages, and the next query.  Pure: input are reports and
+replies, output are queries.  The index of the journal is queried for the newest runs of the unit's
+program, then for more, in sizes that the link carries: there may be thousands.  Alerts are queried
+as soon as a number is missing; other messages when they have been missing for a whole report,
+newest first and in pieces that the link carries.  Messages that are durable on the station's disk
+are acknowledged, so that the unit may delete them when it needs the room.
 """
 
 from __future__ import annotations
@@ -24,17 +23,17 @@ from shared.messages import JournalChunk, JournalEntry, JournalIndex
 from shared.sequence_set import Run, SequenceSet
 
 _INDEX_EVERY_NS = 30 * NS_PER_S
-_INDEX_MORE_NS = NS_PER_S  # where more runs than were asked for may be there
+_INDEX_MORE_NS = NS_PER_S  # where the journal may have more runs than were queried
 _INDEXED_BYTES = 32  # of each run in an index
 _ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of them
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that the first messages can be stored first
-_NUMBER_BYTES = 100.0  # that come for a number, as long as none have
+_NUMBER_BYTES = 100.0  # of a message, assumed before the first reply
 _EVICTED_BYTES = 0.1  # where the journal has none of them any more
 _OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
-_PIECE_SHARE = 0.8  # of an answer; the rest takes a question more
+_PIECE_SHARE = 0.8  # of a reply; the rest takes another query
 _LEARN_SHARE = 0.02
-_BRIDGED = 4  # messages that are there between two holes: a question more costs as much
+_BRIDGED = 4  # received messages between two gaps, repeated instead of another query
 
 
 class Held(NamedTuple):
@@ -51,7 +50,7 @@ class Question(NamedTuple):
 
     @property
     def max_bytes(self) -> int:
-        """Limit of the bytes of messages that it asks for."""
+        """Limit of the bytes of messages in the reply."""
         return dict(self.parameters).get("total", 0)
 
     @property
@@ -74,7 +73,7 @@ class _Boot:
         self.first = 1  # the oldest that the journal has
         self.newest = 0  # that is known of
         self._settled_to = 0  # a number up to here that is missing is lost, not under way
-        self.unanswered: int | None = None  # alerts from here on were asked for last, in vain
+        self.unanswered: int | None = None  # start of the last query for alerts without reply
         self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
         self.acknowledged = 0
         self.acknowledge_due_ns = 0
@@ -90,12 +89,12 @@ class _Boot:
             self.complete.append(_union(self.held, self._evicted).complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
-        """Note that all messages of the run that the journal has have come."""
+        """Note that all messages of the run in the journal were received."""
         for one in (self._fetched, self._have, self._known):
             one.add_run(run)
 
     def note_evicted(self, run: Run, entries: tuple[JournalEntry, ...]) -> None:
-        """But for these the journal has nothing of it any more."""
+        """Note the numbers that the journal still has; all others of the run are lost."""
         there = SequenceSet()
         for entry in entries:
             there.add(entry.seq)
@@ -103,17 +102,17 @@ class _Boot:
             self._evicted.add_run(gone)
 
     def new(self, entries: tuple[JournalEntry, ...]) -> tuple[JournalEntry, ...]:
-        """Those that are not there yet."""
+        """Return the numbers that were not received yet."""
         return tuple(one for one in entries if one.seq not in self._have)
 
     def note_without_alert(self, run: Run) -> None:
-        """Note that all alerts of the run that the journal has have come."""
+        """Note that all alerts of the run in the journal were received."""
         for one in (self._without_alert, self._known):
             one.add_run(run)
 
     def piece(self, count: int) -> Run | None:
-        """The newest of what is missing and not under way, so many numbers at most; across a few
-        that are there, rather than to ask again for each of many holes.
+        """Return the newest missing range that is not under way, with a bounded number of messages;
+        it may include a few received ones instead of a query for each gap.
         """
         lost = self._have.newest_missing(self.first, self._answered_to(self._settled_to))
         if lost is None:
@@ -128,7 +127,7 @@ class _Boot:
         return Run(first, last)
 
     def start_over(self) -> None:
-        """Forget fetched messages: not all have come into the log."""
+        """Forget fetched messages, because not all of them are in the log."""
         self._fetched = SequenceSet()
         self._evicted = SequenceSet()
         self._without_alert = SequenceSet()
@@ -137,9 +136,9 @@ class _Boot:
         self.complete.clear()
 
     def may_have_alerts(self) -> Run | None:
-        """Range in which an alert may be missing.  An alert overtakes all but other alerts on its
-        way, so a missing number before any that came is lost; and so are numbers sent long ago,
-        such as the last ones of a run that ended out of reach.
+        """Range in which an alert may be missing.  An alert is sent ahead of all but other alerts.
+        So a missing number before any received one is lost, and so are numbers sent long ago, such
+        as the last ones of a run that ended without a link.
         """
         last = max(self.held.lasts[-1], self._settled_to) if self.held.lasts else self.newest
         newest = self._known.newest_missing(self.first, self._answered_to(last))
@@ -152,7 +151,9 @@ class _Boot:
 
 
 class JournalClient:
-    """``report`` what is there; put the ``next_question`` and give it ``take`` and ``end``."""
+    """Call ``report`` with the received messages, send the ``next_question``, and pass its replies
+    to ``take`` and ``end``.
+    """
 
     def __init__(self) -> None:
         self._boots: dict[int, _Boot] = {}
@@ -163,18 +164,17 @@ class JournalClient:
         self._index_pace = AdaptiveChunkSize()
         self._number_bytes = _NUMBER_BYTES
         self._came_bytes = 0  # in answer to the question that is being answered
-        self._has_more = False  # perhaps, than the last index names
-        self._valid_replies = 0  # to that question
-        self._silent = False  # it did not answer, or nonsense: not before the next report again
+        self._has_more = False  # the journal may have more runs than the last index
+        self._valid_replies = 0  # to that query
+        self._silent = False  # no valid reply: no query before the next report
         self._acknowledging: tuple[_Boot, int] | None = None
         self._alerts_only = False
         self.gone = 0  # numbers that no journal has any more
 
     def report(self, held: tuple[Held, ...], now_ns: int, *, alerts_only: bool = False) -> None:
-        """``held``: of the run that goes on last; ``now_ns`` monotonic.  The index is asked for now
-        and then, and until it has the run that goes on.  Of older ones nothing may be left.
-
-        ``alerts_only``: what is held may not be on the disk, and a backlog has no room there.
+        """Take a report of the station.  ``held``: the running run last; ``now_ns``: monotonic.
+        The index is queried at intervals, and until it has the running run.  ``alerts_only``: the
+        station's disk is full or hangs, so no backlog is fetched.
         """
         self._silent = False
         self._alerts_only = alerts_only
@@ -189,16 +189,16 @@ class JournalClient:
             self._index_due_ns = 0
 
     def note_new_link(self) -> None:
-        """The unit was out of reach, and the capacity of its link is unknown now."""
+        """Note a new link, whose capacity is unknown."""
         self._pace, self._index_pace = AdaptiveChunkSize(), AdaptiveChunkSize()
 
     def start_over(self) -> None:
-        """Only what is reported from now on is there, whatever was fetched."""
+        """Forget fetched messages: only reported ones count from now on."""
         for boot in self._boots.values():
             boot.start_over()
 
     def next_question(self) -> Question | None:
-        """None: there is nothing to ask before the next report."""
+        """Return the next query; None: none before the next report."""
         if self._silent:
             return None
         if self._index_due_ns == 0:
@@ -207,9 +207,8 @@ class JournalClient:
         return asked if asked or self._alerts_only else self._acknowledge()
 
     def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
-        """Learn from one reply; what it brings is to be kept.
-
-        Raises WireError where it makes no sense, or is no answer to this question.
+        """Take one reply; returns the messages to keep.  Raises WireError where it is not valid, or
+        no reply to this query.
         """
         if question.what in ("index", "acknowledge"):
             index = JournalIndex.from_bytes(reply)
@@ -235,7 +234,7 @@ class JournalClient:
         return msgspec.structs.replace(chunk, entries=new)
 
     def end(self, question: Question, took_ns: int) -> None:
-        """No more replies come to this question."""
+        """End a query: no more replies come."""
         valid, self._valid_replies = self._valid_replies, 0
         came_bytes, self._came_bytes = self._came_bytes, 0
         self._note_answered(question, valid)
@@ -275,8 +274,8 @@ class JournalClient:
             self._index_due_ns = self._reported_ns + _INDEX_MORE_NS
 
     def _learn(self, index: JournalIndex, now_ns: int, asked: int) -> None:
-        """Two machines under one name both answer.  An answer has nothing about runs older than
-        those that were asked for.
+        """Take an index of runs.  Two machines under one name both reply.  An index has no runs
+        older than those of the query.
         """
         self._index_due_ns = now_ns + _INDEX_EVERY_NS
         has_more, is_first = len(index.boots) >= asked, self._valid_replies == 0
@@ -295,9 +294,9 @@ class JournalClient:
         return ((boot_id, self._boots[boot_id]) for boot_id in reversed(self._indexed))
 
     def _note_answered(self, question: Question, valid: int) -> None:
-        """A unit reports messages that its disk does not take, and can give them only later:
-        earlier messages must not wait for them.  So where a question for alerts had no answer, one
-        about earlier numbers has its turn.
+        """Note a reply to a query for alerts.  A unit may have messages that its disk does not take
+        yet, and can send them only later.  So a query without a reply is followed by one for
+        earlier numbers.
         """
         asked = dict(question.parameters)
         boot = self._boots.get(asked["epoch"]) if "from" in asked else None
@@ -309,7 +308,7 @@ class JournalClient:
         return asked if asked or self._alerts_only else self._ask_piece()
 
     def _ask_unanswered(self) -> Question | None:
-        """There is nothing else to ask for."""
+        """Query again for alerts without a reply; there is nothing else to query."""
         for boot in self._boots.values():
             boot.unanswered = None
         return self._ask_missing()
@@ -322,7 +321,7 @@ class JournalClient:
         return None
 
     def _ask_piece(self) -> Question | None:
-        """Ask for the newest piece of the newest boot: the wearer's last actions matter most."""
+        """Query for the newest piece of the newest boot, because the latest actions matter most."""
         total = self._pace.answer_bytes
         count = max(1, int(_PIECE_SHARE * total / self._number_bytes))
         for boot_id, boot in self._newest_first():

@@ -1,8 +1,7 @@
-"""Limits on messages of a unit's journal, so that one unit fills neither the log nor its disk.
-
-``engine.rate_limiter`` bounds live messages.  A journal may bring at once what a unit sends in
-hours; beyond that it is asked no faster than any unit may send.  An honest one loses nothing by
-it: the rest is asked for later.
+"""Rate limit on messages from a unit's journal, so that one unit fills neither the log nor its
+disk.  ``engine.rate_limiter`` bounds live messages.  A journal may send at once the messages of
+some hours; beyond that it is queried at the rate of live messages.  Nothing is lost: the rest is
+queried later.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ class _Unit:
 
 
 class JournalRateLimit:
-    """One thread fetches; another may ask for the news."""
+    """Limits of all units; one thread fetches, another may read the changes."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock

@@ -1,8 +1,6 @@
-"""Messages that the log had and has no more: its disk returns other bytes than were written, or
-lacks a file.  Their units may have them still.
-
-Messages that the saved state has seen must be in the log.  Those that are not count as missing
-again, and are fetched from the units' journals like those that the radio lost.
+"""Detector of messages that the log has lost: its disk returns other bytes than were written, or
+lacks a file.  All messages that the saved state contains must be in the log.  Those that are not
+count as missing again, and are fetched from the units' journals like those that the radio lost.
 """
 
 from __future__ import annotations
@@ -21,7 +19,7 @@ from shared.sequence_set import Run, SequenceSet
 
 _log = logging.getLogger(__name__)
 
-_TURN_NS = 300_000_000  # of the reading: a long log is to hold up nothing
+_TURN_NS = 300_000_000  # of reading at a time, so that a long log delays nothing
 
 Lost = Mapping[tuple[str, int], tuple[Run, ...]]  # by sender and run of its program
 _Numbers = defaultdict[tuple[str, int], SequenceSet]

@@ -1,7 +1,5 @@
-"""One pull of a unit's recording: its next question, and the use of the answers.
-
-Every ``step`` asks the unit one question, so that the caller decides the pace.  Received parts are
-on the disk and are not asked for again, whichever of the two was ended in between.
+"""Transfer of a unit's recording, one query a ``step``, so that the caller controls the rate.
+Received parts are on the disk and are not requested again, also after a restart of station or unit.
 """
 
 from __future__ import annotations
@@ -66,11 +64,11 @@ class TransferState(Enum):
 
 
 class PermanentTransferError(Exception):
-    """It makes no sense to go on; the text is for a person."""
+    """The transfer cannot continue; the text is for a person."""
 
 
 class TransientTransferError(Exception):
-    """It begins again with the next step, and goes on where it was; the text is for a person."""
+    """The transfer continues with the next step; the text is for a person."""
 
 
 class Transfer:
@@ -100,7 +98,7 @@ class Transfer:
         self._steps = self._run()
 
     def step(self) -> None:
-        """Ask one question more; never raises for what a unit, a link or a disk may do."""
+        """Send the next query; never raises for faults of a unit, a link or a disk."""
         if self.state.is_over:
             return
         try:
@@ -195,7 +193,7 @@ class Transfer:
             )
 
     def _file(self, file: RecordedFile, before_bytes: int) -> Steps[None]:
-        """Have all of one file; it stays missing where the unit does not have it any more."""
+        """Fetch a whole file; it stays missing where the unit does not have it any more."""
         whole, part = self._paths(file)
         make_folder(whole.parent)
         if 0 < _size(whole) <= file.size_bytes and not part.exists():
@@ -269,7 +267,7 @@ class Transfer:
         return True
 
     def _answer(self, question: str, read: Callable[[bytes], T]) -> Steps[T]:
-        """Ask until there is an answer, once a step."""
+        """Query once a step until there is a reply."""
         while True:
             answer = yield from self._try(question, read)
             if answer is not None:
@@ -277,7 +275,7 @@ class Transfer:
 
     def _try(self, question: str, read: Callable[[bytes], T]) -> Steps[T | None]:
         """Ask once; None where there is no answer."""
-        yield  # others have their turn, which is no time that the link took
+        yield  # the time of other transfers does not count as time of the link
         requested_ns = self._clock.monotonic_ns()
         try:
             answer = self._ask(self.wanted.unit_id, question)
@@ -334,7 +332,7 @@ def _nothing_kept(unit_id: str, first_ns: int) -> str:
 
 
 def _is_safe(name: str) -> bool:
-    """Whatever a unit calls a file, it stays in the unit's folder."""
+    """True if the file's name keeps it in the unit's folder."""
     return re.fullmatch(r"[\w-][\w.-]*/[\w-][\w.-]*", name) is not None
 
 
@@ -348,7 +346,7 @@ def _digest_of(path: Path) -> bytes:
 
 
 def ask_via_bus(bus: Bus) -> Ask:
-    """Questions over the bus, behind live data."""
+    """Return a function that queries over the bus, behind live data."""
 
     def ask(unit_id: str, question: str) -> bytes | None:
         selector = f"{ROOT}/{unit_id}/recording/{question}"

@@ -1,4 +1,4 @@
-"""Queue of recordings that people asked for: pulled by turns, and after a restart too."""
+"""Queue of requested recordings, pulled in turn, and continued after a restart."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class TransferQueue:
         return self._transfers.add(lambda under_way: _new_pull(by, wanted, under_way))
 
     def stop(self, fetch_id: str) -> bool:
-        """Give it up; what has come is kept.  False where there is no such pull under way."""
+        """Stop a pull; received data is kept.  False where there is no such pull under way."""
         for pull in self._transfers.under_way():
             if pull.fetch_id == fetch_id:
                 return self._transfers.note(
@@ -97,7 +97,7 @@ class TransferQueue:
         self._transfers.wake()
 
     def transfers(self) -> tuple[Pull, ...]:
-        """Those under way and the last that are over."""
+        """Return the pulls under way and the last finished ones."""
         return self._transfers.all()
 
     def views(self) -> tuple[RecordingView, ...]:
@@ -128,7 +128,7 @@ class TransferQueue:
         return 0.0 if answered else _REST_S
 
     def _step_transfer(self, pull: Pull) -> bool:
-        """One question to one unit; whether it answered."""
+        """Send one query to one unit; True if it replied."""
         try:
             fetch = self._running.get(pull.fetch_id)
             if pull.state.is_over:  # since this round began
