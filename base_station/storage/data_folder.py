@@ -23,9 +23,7 @@ class DataFolder:
         self.radio = path / "radio"  # audio of radio channels
         self.imports = path / "imports"  # files imported into incidents
         self.database = path / "station.sqlite"
-        self.tables_behind = (
-            path / "tables-behind"
-        )  # time since which the tables are behind, while the server is away
+        self.tables_behind = path / "tables-behind"  # since when, while the server is away
         self.erasure_jobs = path / "forgetting.json"
         # Erasures of incidents in progress, with the people that they concern
         self.pending_erasures = path / "forgetting-begun.json"

@@ -12,9 +12,7 @@ from pathlib import Path
 from shared.clock import NS_PER_S
 from shared.mcap_log import SegmentInfo, SegmentState, segment_began_ns, segment_number
 
-_KILLED_NS = (
-    2 * NS_PER_S
-)  # of the newest segment, which a kill may lose: it was not on the disk yet
+_KILLED_NS = 2 * NS_PER_S  # of the newest segment, which a kill may lose
 
 
 @dataclass(frozen=True, slots=True)

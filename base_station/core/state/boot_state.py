@@ -20,9 +20,7 @@ BACKDATED_NS = 60 * NS_PER_S  # by a unit that knows the station's time
 CLOCK_SET_NS = 60 * NS_PER_S  # all messages late by this: the station's clock was set
 CLOCK_SET_MESSAGES = 20  # in a row
 UNIT_OFFSET_SLACK_NS = NS_PER_S // 20
-SLOWEST_NS = (
-    30 * NS_PER_S
-)  # a unit's clock estimate is wrong if all its messages would be slower than this
+SLOWEST_NS = 30 * NS_PER_S  # a clock estimate is wrong if all messages would be slower
 
 
 class BootState(msgspec.Struct):
