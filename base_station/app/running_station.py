@@ -43,7 +43,7 @@ from base_station.radio.recorders import RadioRecorders
 from base_station.replay.post_processing_worker import PostProcessingWorker
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.site.plan_reader import PlanReader
-from base_station.standby.erasure_handover import WaitingErasure
+from base_station.standby.leader_requests import LeaderRequests, WaitingErasure
 from base_station.standby.mode import HaMode, Paired, Parts, Standalone
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.replicated_tables import ReplicatedTables
@@ -129,6 +129,7 @@ class RunningStation:
 
     def _new_ha_mode(self) -> HaMode:
         resources, disk = self._resources, self._disk
+        unfinished = UnfinishedErasures(disk.store)
         parts = Parts(
             data=disk.folder.path,
             bus=resources.bus,
@@ -151,7 +152,9 @@ class RunningStation:
             start_again=self._restarts.request,
             step_again=self._restarts.note_repaired,
             erasures=self._waiting_erasures,
-            unfinished_erasures=UnfinishedErasures(disk.store).find,
+            unfinished_erasures=unfinished.find,
+            orphaned_erasures=unfinished.find_orphaned,
+            leader_requests=LeaderRequests(disk.folder.leader_requests),
             forget=self._erase_for_peer,
         )
         standby = resources.config.standby
@@ -365,7 +368,7 @@ class RunningStation:
         self._engine.save_soon()
 
     def _waiting_erasures(self) -> list[WaitingErasure]:
-        """Erasures requested at this standby, which the leader has to carry out."""
+        """Erasures requested at this station and not done; of a standby the leader takes them."""
         return [
             WaitingErasure(one.forgetting_id, one.kind, one.subject_id)
             for one in self._erasures.own_waiting()

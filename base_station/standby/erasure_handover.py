@@ -1,6 +1,7 @@
 """Hand-over of erasures: an erasure is ordered in the log, and only the station that leads writes
-there.  What was requested of a station that follows by now is fetched, and ordered, by the leader;
-and what a leader that is lost has ordered and not finished is ordered again.
+there.  What was requested of a station that follows by now is fetched, and ordered, by the leader.
+Of a leader that is lost, what it has ordered and not finished is ordered again, and what it has not
+ordered yet, which the one that follows has copied.
 """
 
 from __future__ import annotations
@@ -10,32 +11,42 @@ from threading import Event
 
 import msgspec
 
+from base_station.standby.leader_requests import LeaderRequests, WaitingErasure
 from base_station.standby.protocol import pack, unpack
 from base_station.standby.rpc import RpcServer, ask
 from base_station.storage.db.unfinished_erasures import UnfinishedErasure
 from shared.bus import Bus
 
 
-class WaitingErasure(msgspec.Struct, frozen=True):
-    """Erasure that was requested of a station that cannot order it."""
+class WaitingErasures(msgspec.Struct, frozen=True):
+    """All requests that wait at a station, in one answer: none is another answer than silence."""
 
-    request_id: str
-    kind: str  # "person" or "incident"
-    subject_id: str
+    waiting: tuple[WaitingErasure, ...]
 
 
 class ErasureServer(RpcServer):
-    """Serves ``erasures``: those that wait here for a leader."""
+    """Serves what was requested here and is not done: ``erasures``, one by one and only while this
+    station follows, for the leader to order; ``erasure_requests``, all at once, to be copied.
+    """
 
     def __init__(
-        self, station: str, bus: Bus, waiting: Callable[[], Iterable[WaitingErasure]]
+        self,
+        station: str,
+        bus: Bus,
+        leads: Callable[[], bool],
+        waiting: Callable[[], Iterable[WaitingErasure]],
     ) -> None:
+        self._leads = leads
         self._waiting = waiting
-        super().__init__(station, bus, {"erasures": self._erasures})
+        served = {"erasures": self._erasures, "erasure_requests": self._requests}
+        super().__init__(station, bus, served)
 
     def _erasures(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
-        for one in self._waiting():
+        for one in () if self._leads() else self._waiting():
             yield pack(one)
+
+    def _requests(self, _key: str, _parameters: str, _payload: bytes) -> Iterator[bytes]:
+        yield pack(WaitingErasures(tuple(self._waiting())))
 
 
 class ErasureHandover:
@@ -47,6 +58,7 @@ class ErasureHandover:
         leads: Callable[[], bool],
         other: Callable[[], str | None],
         unfinished: Callable[[], Iterable[UnfinishedErasure]],
+        leader_requests: LeaderRequests,
         take: Callable[[str], None],
     ) -> None:
         """``other``: the other station, where it answers.  ``unfinished``: orders of former
@@ -57,23 +69,28 @@ class ErasureHandover:
         self._leads = leads
         self._other = other
         self._unfinished = unfinished
+        self._leader_requests = leader_requests
         self._take = take
         self._taken: set[str] = set()  # by request or order
 
     def run_round(self, _stop: Event) -> None:
-        """Take over each new request and order.  Raises MusterError where a store fails,
-        or the other station's answer makes no sense.
+        """Take over each new request and order; at a station that follows, copy the leader's
+        requests.  Raises MusterError where a store fails, or the other station's answer makes no
+        sense.
         """
+        station = self._other()
         if not self._leads():
+            for answer in () if station is None else ask(self._bus, station, "erasure_requests"):
+                self._leader_requests.replace(unpack(answer, WaitingErasures).waiting)
             return
         for left in self._unfinished():
             self._take_once(left.order_id, left.subject)
-        station = self._other()
-        if station is None:
-            return
-        for answer in ask(self._bus, station, "erasures"):
+        for one in self._leader_requests.all():
+            self._take_once(one.request_id, one.subject)
+        self._leader_requests.replace(())
+        for answer in () if station is None else ask(self._bus, station, "erasures"):
             one = unpack(answer, WaitingErasure)
-            self._take_once(one.request_id, f"{one.kind} {one.subject_id}")
+            self._take_once(one.request_id, one.subject)
 
     def _take_once(self, request_id: str, subject: str) -> None:
         if request_id not in self._taken:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event
 from typing import Protocol
 
 from base_station.api.ha_status import HaStatus
@@ -21,9 +22,9 @@ from base_station.standby.branch_merge import BranchMerge, PartServer
 from base_station.standby.erasure_handover import (
     ErasureHandover,
     ErasureServer,
-    WaitingErasure,
 )
 from base_station.standby.ha_controller import HaController, HaDependencies
+from base_station.standby.leader_requests import LeaderRequests, WaitingErasure
 from base_station.standby.log_repair import EventServer, LogRepair, SharedLogFiles
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
@@ -58,9 +59,12 @@ class Parts:
     on_lead: Callable[[], None]
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing
-    erasures: Callable[[], Iterable[WaitingErasure]]  # that wait for a station that leads
+    erasures: Callable[[], Iterable[WaitingErasure]]  # requested here, and not done
     # Ordered by a former leader that has not reported that they are done.
     unfinished_erasures: Callable[[], Iterable[UnfinishedErasure]]
+    # The same at a station that was one of a pair and runs alone now, where nobody takes over.
+    orphaned_erasures: Callable[[], Iterable[UnfinishedErasure]]
+    leader_requests: LeaderRequests  # copied from the station that leads
     forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
 
 
@@ -125,7 +129,8 @@ class Standalone:
     def __init__(self, parts: Parts) -> None:
         self.log = parts.log
         self.feed = parts.live
-        self._on_lead = parts.on_lead
+        self._parts = parts
+        self._has_inherited = False
 
     def gate_to(self, drive: EngineGate) -> EngineGate:
         return drive
@@ -143,7 +148,26 @@ class Standalone:
         pass
 
     def start(self, gate: EngineGate, closing: ExitStack) -> None:  # noqa: ARG002  # the port's
-        self._on_lead()
+        self._parts.on_lead()
+        inheriting = Worker.periodic(
+            "erasures", 2.0, self._inherit_erasures, "erasures of a former pair are not finished"
+        )
+        closing.callback(inheriting.close)
+        inheriting.start()
+
+    def _inherit_erasures(self, _stop: Event) -> None:
+        """Take over, once, what the other station of a former pair has not finished."""
+        if self._has_inherited:
+            return
+        parts = self._parts
+        own = {one.subject for one in parts.erasures()}
+        ordered = [one.subject for one in parts.orphaned_erasures()]
+        requested = [one.subject for one in parts.leader_requests.all()]
+        for subject in dict.fromkeys((*ordered, *requested)):
+            if subject not in own:
+                parts.forget(subject)
+        parts.leader_requests.replace(())
+        self._has_inherited = True
 
 
 class Paired:
@@ -196,7 +220,7 @@ class Paired:
             TableServer(name, parts.bus, parts.tables, parts.pki),
             PartServer(name, parts.bus, parts.data),
             EventServer(name, parts.bus, parts.disk),
-            ErasureServer(name, parts.bus, lambda: () if pair.leads else parts.erasures()),
+            ErasureServer(name, parts.bus, lambda: pair.leads, parts.erasures),
         ):
             closing.callback(server.close)
         copying = TableReplication(
@@ -228,6 +252,7 @@ class Paired:
             lambda: pair.leads,
             pair.reachable_peer,
             parts.unfinished_erasures,
+            parts.leader_requests,
             parts.forget,
         )
         threads = (

@@ -27,6 +27,8 @@ class DataFolder:
         self.erasure_jobs = path / "forgetting.json"
         # Erasures of incidents in progress, with the people that they concern
         self.pending_erasures = path / "forgetting-begun.json"
+        # Erasures that wait at the leader of a pair, copied from it
+        self.leader_requests = path / "forgetting-of-leader.json"
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:

@@ -18,10 +18,13 @@ from tests.bench.standby.two_stations import TwoStations
 from tests.rig.erasure_scenario import names_in, some_photo, stored_in
 from tests.rig.incident_closing import despite
 from tests.rig.pacing import PATIENCE_S, wait_until
+from tests.rig.station_command import Command
+from tests.rig.station_process import free_port
 from tests.rig.two_stations import two_stations
 
 NAME = "Zebediah Quartermaine"
 OTHER = "Bo Lind"
+LEADER_REQUESTS = "forgetting-of-leader.json"
 
 
 @pytest.fixture
@@ -159,6 +162,28 @@ def test_erasure_of_a_leader_that_is_lost_in_the_middle_is_finished_by_the_other
     assert left_of(two.second, photo) == []
     assert names_in(stored_in(two.second.data), OTHER)
     assert "ForgotPerson" in audited(two.second)
+
+
+def test_erasure_of_a_lost_leader_is_finished_by_the_other_that_runs_alone(
+    two: TwoStations, tmp_path: Path
+) -> None:
+    person_id, photo = record_incident(two)
+    recordings = two.first.data / "recordings"
+    recordings.mkdir(exist_ok=True)
+    (recordings / "anna").touch()  # no folder: removing it is tried for 20 s
+    two.first.post(f"/people/{person_id}/forget", {"name": NAME})
+    wait_until("the second has the order", lambda: "BeginErasure" in audited(two.second))
+    wait_until("the second has the request", (two.second.data / LEADER_REQUESTS).exists)
+    two.first.kill()
+    two.second.kill()
+    assert left_of(two.second, photo)
+    flags = ("--data", str(two.second.data), "--http", f"127.0.0.1:{free_port()}")
+    listen = ("--listen", f"tcp/127.0.0.1:{free_port()}")
+    alone = Command(tmp_path / "alone.txt", "serve", *listen, *flags)
+    alone.wait_ready()
+    wait_until("it has forgotten", lambda: left_of(two.second, photo) == [])
+    alone.stop()
+    assert names_in(stored_in(two.second.data), OTHER)
 
 
 def test_erasure_by_command_on_a_stopped_station_reaches_the_other_when_both_run(

@@ -75,6 +75,19 @@ def test_reported_erasure_that_is_ordered_again_is_left(audit: Audit) -> None:
     assert audit.left() == ["incident i1"]
 
 
+def test_station_that_was_one_of_a_pair_has_all_unfinished_ones(audit: Audit) -> None:
+    def orphaned() -> list[str]:
+        return [one.subject for one in UnfinishedErasures(audit.store).find_orphaned()]
+
+    audit.note(BeginErasure("incident", "i1"))
+    assert orphaned() == [], "the log was never that of a pair: the queue has it"
+    audit.note(TAKE_OVER)
+    audit.note(ORDER)  # by the station that is lost now
+    assert orphaned() == ["incident i1", "person p1"]
+    audit.report(FORGOT_PERSON, DONE)
+    assert orphaned() == ["incident i1"]
+
+
 def test_entries_that_come_between_two_looks_are_read(audit: Audit) -> None:
     unfinished = UnfinishedErasures(audit.store)
     audit.note(ORDER)
