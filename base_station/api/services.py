@@ -18,6 +18,7 @@ from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.api.route_finder import RouteFinder
 from base_station.config import AccountabilityConfig, RetentionConfig
+from base_station.core.alarms.thresholds import Thresholds
 from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
 from base_station.dispatch.alert_intake import AlertIntake
@@ -28,6 +29,7 @@ from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.post_processing import PostProcessor
+from base_station.replay.rehearsal.report import RehearsalReport
 from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
 from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.report.process import ReportProcess
@@ -47,6 +49,9 @@ from shared.clock import Clock
 from shared.coded_text import coded, map_texts, text_of_error
 from shared.errors import StoreError, UserError
 from shared.messages.station import Action
+
+# Sets of thresholds over an incident, and which one a sweep changes; empty: it is no sweep.
+Rehearse = Callable[[IncidentRow, Sequence[Thresholds], str], RehearsalReport]
 
 ACTION_TIMEOUT_S = 10.0
 _TOO_BUSY = coded("station-too-busy", "the station is too busy to say this now; try again")
@@ -78,6 +83,7 @@ class Services(LoginServices):
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
     reports: ReportProcess | None = None  # None: a station that only replays
+    rehearse: Rehearse | None = None  # None: a station that only replays
     # None: a station without a log.
     read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
     log_of: Callable[[IncidentRow], LogFeed] | None = None  # None: a station without a log
@@ -96,6 +102,7 @@ class Services(LoginServices):
     # requests hold no thread: those are for actions.
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
     import_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # one file is read at a time
+    rehearsal_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # minutes for a long one
     timeline_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # as above, shorter work
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:

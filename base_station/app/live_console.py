@@ -17,6 +17,7 @@ from base_station.engine.log_feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.processes.log_process import LogProcess
+from base_station.replay.processes.rehearsal_process import RehearsalProcess
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.report.alarm_explanation import AlarmExplainer, ReadLog
@@ -56,6 +57,7 @@ def new_services(parts: LiveParts) -> Services:
         recordings=resources.recordings,
         post_processor=parts.post_processor,
         reports=ReportProcess(log_process),
+        rehearse=RehearsalProcess(log_process, str(disk.folder.checkpoints)).rehearse,
         read_timeline=TimelineProcess(log_process).read,
         log_of=_log_of_incident(disk),
         alarm_explainer=AlarmExplainer(disk.records, _past_log(disk)),

@@ -42,7 +42,7 @@ def rehearse(
     """
     # Imported where needed: they take their time, and a wrong option is refused before.
     from base_station.app.offline_rehearsal import open_rehearsal  # noqa: PLC0415
-    from base_station.replay.rehearsal.changes import changes_of, sweep_of  # noqa: PLC0415
+    from base_station.replay.rehearsal.changes import changes_of, points_of  # noqa: PLC0415
     from base_station.replay.rehearsal.tables import (  # noqa: PLC0415
         print_rehearsal,
         write_rehearsal,
@@ -52,20 +52,16 @@ def rehearse(
     changes = changes_of(change or ())
     if picture is not None and not sweep:
         raise UserError("a picture is drawn of a sweep; give --sweep too")
-    if sweep:
-        swept, values = sweep_of(sweep)
-        if swept in changes:
-            raise UserError(f"{swept} is given by --set and by --sweep; leave one of them out")
-        points = [changes | {swept: value} for value in values]
-    elif changes:
-        swept, points = "", [changes]
-    else:
+    if not (sweep or changes):
         raise UserError("give the thresholds to rehearse: --set no-motion.alarm_s=25, or --sweep")
+    swept, points = points_of(changes, sweep)
     with sigterm_as_ctrl_c(), ExitStack() as closing:
         with progress_bar("reading the log") as on_progress:
             opened = open_rehearsal(data, incident or (), closing, _warn, on_progress)
         with progress_bar("rehearsing") as on_progress:
             report = opened.rehearser.rehearse(opened.incidents, points, swept, on_progress)
+    if all(point.problem for point in report.points):
+        raise UserError(f"{report.points[0].problem}; give the other threshold with --set too")
     print_rehearsal(report)
     if json_file is not None:
         write_rehearsal(report, json_file)

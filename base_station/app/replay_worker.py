@@ -12,6 +12,7 @@ from base_station.archive.copying import ArchiveCopier
 from base_station.archive.partly_archived import opened_copy, partly_archived, without_archived
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import FolderFeed, LogFeed
+from base_station.fusion import FUSERS
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.playback import Archive
@@ -36,6 +37,8 @@ from base_station.replay.processes.wire import (
     FrameChannel,
     Job,
     PostProcessingJob,
+    RehearsalFrame,
+    RehearsalJob,
     ReplayJob,
     ReportFrame,
     ReportJob,
@@ -43,6 +46,7 @@ from base_station.replay.processes.wire import (
     TimelineJob,
     read_job,
 )
+from base_station.replay.rehearsal.rehearse import Rehearser
 from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline
 from base_station.report.data_collection import ReportSources, collect_report_data
 from base_station.report.document import html_document
@@ -81,6 +85,8 @@ def work(line: FrameChannel) -> None:
             _post_process(job, _archive(job, log, flaws), line)
         case ReportJob():
             _report(job, log, flaws, line)
+        case RehearsalJob():
+            _rehearse(job, _archive(job, log, flaws), line)
         case CatchUpJob():
             _catch_up(job, _archive(job, log, flaws), line)
         case TimelineJob():
@@ -95,13 +101,14 @@ def _log_of(job: Job, own: FolderFeed, flaws: LogDefects) -> LogFeed:
             ReplayJob(archived=ArchivedLog() as archived)
             | PostProcessingJob(archived=ArchivedLog() as archived)
             | ReportJob(archived=ArchivedLog() as archived)
+            | RehearsalJob(archived=ArchivedLog() as archived)
         ):
             return opened_copy(archived, flaws)
     return own
 
 
 def _archive(
-    job: ReplayJob | PostProcessingJob | CatchUpJob, log: LogFeed, flaws: LogDefects
+    job: ReplayJob | PostProcessingJob | RehearsalJob | CatchUpJob, log: LogFeed, flaws: LogDefects
 ) -> Archive:
     return Archive(
         log.records,
@@ -118,7 +125,9 @@ def _archive(
 def _flaws_of(job: Job) -> LogDefects:
     log = Path(job.log)
     match job:
-        case ReplayJob() | PostProcessingJob() | ReportJob() if job.archived is not None:
+        case ReplayJob() | PostProcessingJob() | ReportJob() | RehearsalJob() if (
+            job.archived is not None
+        ):
             return LogDefects(Path(job.incident_id))  # no folder of this machine
         case ArchiveJob():
             return LogDefects(log, (), is_written=True)
@@ -126,7 +135,7 @@ def _flaws_of(job: Job) -> LogDefects:
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
         case CatchUpJob():
             return LogDefects(log, (), is_written=True, from_ns=job.since_ns)
-        case PostProcessingJob() | ReportJob():
+        case PostProcessingJob() | ReportJob() | RehearsalJob():
             return LogDefects(
                 log,
                 job.known_segments,
@@ -181,6 +190,23 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
                 collect_report_data(sources, records.require_incident(job.incident_id))
             )
         line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
+    except MusterError as error:
+        line.send(Failure.of(error))
+
+
+def _rehearse(job: RehearsalJob, archive: Archive, line: FrameChannel) -> None:
+    lower_priority(line)
+    try:
+        with open_database(Path(job.database)) as store:
+            records = Records(store, SystemClock())
+            rehearser = Rehearser(
+                lambda _: archive,
+                FUSERS[0],
+                records,
+                DataFolder(Path(job.log).parent).recorded_until_ns,
+            )
+            incident = records.require_incident(job.incident_id)
+            line.send(RehearsalFrame(rehearser.rehearse([incident], job.points, job.swept)))
     except MusterError as error:
         line.send(Failure.of(error))
 

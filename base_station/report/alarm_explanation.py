@@ -14,14 +14,13 @@ from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of, with_thresholds
 from base_station.report.contents import Interval, Series
 from base_station.report.log_facts import UnitFacts, read_facts, wanted_keys
-from base_station.report.orders import details_of
+from base_station.report.thresholds_in_force import thresholds_in_force
 from base_station.storage.db.models import AlarmRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import Window
 from shared.clock import NS_PER_S
 from shared.mcap_log import LogRecord
 from shared.messages import EventKind
-from shared.messages.station import SetThresholds
 
 ABOUT_NS = 60 * NS_PER_S  # before and after
 _BUTTONS = frozenset({EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.ACKNOWLEDGED})
@@ -95,8 +94,7 @@ class AlarmExplainer:
 
     def _thresholds(self, alarm: AlarmRow) -> tuple[tuple[str, float], ...]:
         """Those in force when it was raised."""
-        last = self.records.last_audited(SetThresholds.__name__, alarm.raised_ns + 1)
-        in_force = {} if last is None else dict(details_of(last).get("thresholds", {}))
+        in_force = thresholds_in_force(self.records, alarm.raised_ns + 1)
         rule = next((one for one in ALARMS if one.name == alarm.rule), None)
         if rule is None:
             return ()

@@ -11,6 +11,7 @@ from typing import Any, cast
 import msgspec
 
 from base_station.core.alarms import ALARMS
+from base_station.core.alarms.interface import AlarmRule
 from base_station.core.alarms.thresholds import limits_of, with_thresholds
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.dispatch.description import description
@@ -34,6 +35,7 @@ from base_station.report.log_facts import LogFacts, read_facts, series_within, w
 from base_station.report.orders import details_of, kind_name, orders_of
 from base_station.report.people import IncidentPeople
 from base_station.report.photographs import photographs_of
+from base_station.report.thresholds_in_force import thresholds_in_force
 from base_station.site.plan import salvage_plan
 from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry, IncidentRow
 from base_station.storage.db.records import Records
@@ -47,7 +49,6 @@ from shared.messages.station import (
     Action,
     OpenIncident,
     SetAccountability,
-    SetThresholds,
 )
 
 ABOUT_NS = 60 * NS_PER_S  # before and after an alarm
@@ -185,7 +186,7 @@ class _Collector:
         return sorted(of_units, key=lambda one: (one.priority, one.raised_ns, one.alarm_id))
 
     def _traces(self, facts: LogFacts) -> Iterable[AlarmTrace]:
-        rules = {rule.name: rule for rule in with_thresholds(ALARMS, self._set_thresholds())}
+        rules = {rule.name: rule for rule in self._rules_in_force()}
         chosen = self._explained_alarms()[:MOST_TRACES]
         lives = self._sources.records.alarm_lives([one.alarm_id for one in chosen])
         for alarm in sorted(chosen, key=lambda one: (one.raised_ns, one.alarm_id)):
@@ -288,13 +289,12 @@ class _Collector:
                 work_s = details.get("work_limit_s") or work_s
         return par_s, work_s
 
-    def _set_thresholds(self) -> dict[str, float]:
-        last = self._sources.records.last_audited(SetThresholds.__name__, self._window.until_ns)
-        return {} if last is None else dict(details_of(last).get("thresholds", {}))
+    def _rules_in_force(self) -> Sequence[AlarmRule]:
+        recorded = thresholds_in_force(self._sources.records, self._window.until_ns)
+        return with_thresholds(ALARMS, recorded)
 
     def _thresholds(self) -> Iterable[tuple[str, float, float]]:
-        in_force = with_thresholds(ALARMS, self._set_thresholds())
-        for rule, default in zip(in_force, ALARMS, strict=True):
+        for rule, default in zip(self._rules_in_force(), ALARMS, strict=True):
             for name in limits_of(rule):
                 now, usual = float(getattr(rule, name)), float(getattr(default, name))
                 yield f"{rule.name}.{name}", now, usual

@@ -41,7 +41,7 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
     },
     "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings", "/dispatch"},
     "one incident": {"/incidents/{incident_id}/tracks", "/incidents/{incident_id}/imports"},
-    "the program": {"/export-formats"},
+    "the program": {"/export-formats", "/incidents/{incident_id}/thresholds"},
     "the last wishes": {"/forgettings"},
 }
 

@@ -14,36 +14,14 @@ from base_station.cli import app
 from base_station.replay.rehearsal.report import RehearsalReport
 from shared.clock import NS_PER_MS
 from shared.errors import UserError
-from shared.messages.station import Assign, CloseIncident, OpenIncident, SetThresholds
 from tests.rig.reported_incident import write_log
-from tests.rig.station_script import Script
-
-RESTS = ((20, 47), (80, 102), (150, 215))  # seconds: from, until
-DURATION_S = 260
-
-
-def incident(alarm_s: float) -> Script:
-    """One person who rests now and then, watched with this threshold."""
-    script = Script()
-    script.act(SetThresholds({"no-motion.alarm_s": alarm_s, "no-motion.pre_alert_s": 10.0}), "st")
-    script.register("FF-01")
-    script.act(Assign("FF-01", "p1", "Anna Vos", "red", ""))
-    script.act(OpenIncident("i1", "Mill Lane 4"))
-    for second in range(DURATION_S):
-        script.now_s += 1.0
-        rest = next((one for one in RESTS if one[0] <= second < one[1]), None)
-        script.status("FF-01", motionless_s=0.0 if rest is None else float(second - rest[0]))
-        script.position("FF-01", 1.0 * second, 0.0)
-        script.tick()
-    script.act(CloseIncident("i1"))
-    script.wait(1.0)
-    return script
+from tests.rig.resting_person import DURATION_S, resting_person
 
 
 @pytest.fixture(scope="module")
 def given(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("given")
-    write_log(folder, incident(30.0).records)
+    write_log(folder, resting_person(30.0).records)
     return folder
 
 
@@ -68,7 +46,7 @@ def test_rehearsal_equals_a_station_with_those_thresholds(given: Path, tmp_path:
     assert found.worn_h == pytest.approx(DURATION_S / 3600.0, rel=0.02)
     assert alarm.rehearsed_per_hour == pytest.approx(3 / found.worn_h)
     assert found.incidents[0].live_alarms == {"no-motion": 3}
-    live = next(one for one in incident(20.0).alarms if one.level == "alarm")
+    live = next(one for one in resting_person(20.0).alarms if one.level == "alarm")
     rehearsed_ms = [one.rehearsed_ms for one in found.points[0].changes if one.level == "alarm"]
     assert rehearsed_ms[0] == live.header.t_mono_ns // NS_PER_MS
 
@@ -102,7 +80,7 @@ def test_invalid_rehearsal_is_refused(given: Path, options: tuple[str, ...], mes
 
 
 def test_intact_part_of_a_damaged_log_is_rehearsed(tmp_path: Path) -> None:
-    write_log(tmp_path, incident(30.0).records)
+    write_log(tmp_path, resting_person(30.0).records)
     last = sorted((tmp_path / "log").glob("*.mcap"))[-1]
     content = last.read_bytes()
     last.write_bytes(content[: len(content) // 2])

@@ -20,6 +20,9 @@ PARAMETERS: Mapping[str, str] = {
     "alarm": "Beginning of the name of a rule that raised an alarm, such as mayday.",
     "only": "Ids of units, or names of people or crews; left out: everybody.",
     "gzip": "Compressed, as a file whose name ends in .gz.",
+    "change": "A threshold with its value, as no-motion.alarm_s=25; repeatable.",
+    "sweep": "A threshold that is tried from the first value to the last by steps, as "
+    "no-motion.alarm_s=15:60:5.",
     "buckets": "Parts of the span: each has at most two values of a column, its least and its "
     "greatest.",
     "every_s": "One point for so many seconds.",

@@ -264,6 +264,16 @@ export const alarmExplanation = (alarmId: string) =>
 export const assessment = (incidentId: string) =>
   call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);
 
+export const thresholds = (incidentId: string) =>
+  call<answers.ThresholdAnswer[]>("GET", `/incidents/${id(incidentId)}/thresholds`);
+
+/** Takes some seconds for each hour of wear.  `changes`: "no-motion.alarm_s=25"; `sweep`: "no-motion.alarm_s=15:60:5". */
+export const rehearsal = (incidentId: string, changes: readonly string[], sweep: string) =>
+  call<answers.RehearsalAnswer>(
+    "GET",
+    `/incidents/${id(incidentId)}/rehearsal?sweep=${id(sweep)}${changes.map((one) => `&change=${id(one)}`).join("")}`,
+  );
+
 export const carriedOut = (key: string) => call<CarriedOut>("GET", `/idempotency-keys/${id(key)}`);
 
 export const takeOver = () => call<void>("POST", "/standby/take-over");

@@ -12,6 +12,7 @@ export const floor = signal<FloorChoice>("all");
 export type DialogName =
   | "incidents"
   | "assessment"
+  | "rehearsal"
   | "people"
   | "units"
   | "site"
@@ -50,6 +51,8 @@ interface NamedIncident {
 }
 /** The incident that is assessed. */
 export const assessed = signal<NamedIncident | null>(null);
+/** The incident over which thresholds are rehearsed. */
+export const rehearsed = signal<NamedIncident | null>(null);
 /** The incident whose imports are listed. */
 export const withImports = signal<NamedIncident | null>(null);
 
@@ -109,6 +112,11 @@ export function openDispatch(number: string): void {
 export function assess(incident: NamedIncident): void {
   assessed.value = incident;
   openDialog("assessment");
+}
+
+export function openRehearsal(incident: NamedIncident): void {
+  rehearsed.value = incident;
+  openDialog("rehearsal");
 }
 
 export function openImports(incident: NamedIncident): void {

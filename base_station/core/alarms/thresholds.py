@@ -94,6 +94,18 @@ def limits_of(rule: AlarmRule) -> Mapping[str, Any]:
     return _limits_of(type(rule))
 
 
+def bounds_of(rule: AlarmRule) -> Mapping[str, tuple[float, float]]:
+    """Lowest and highest value of each threshold."""
+    return {name: _bounds(limits) for name, limits in limits_of(rule).items()}
+
+
+def _bounds(limits: Any) -> tuple[float, float]:
+    (within,) = (one for one in limits.__metadata__ if isinstance(one, msgspec.Meta))
+    if within.ge is None or within.le is None:
+        raise TypeError("a threshold needs both limits (shared.config.Within)")
+    return float(within.ge), float(within.le)
+
+
 @cache
 def _limits_of(kind: type[AlarmRule]) -> Mapping[str, Any]:
     hints = get_type_hints(kind, include_extras=True)

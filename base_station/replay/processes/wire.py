@@ -10,6 +10,8 @@ from threading import Lock
 
 import msgspec
 
+from base_station.core.alarms.thresholds import Thresholds
+from base_station.replay.rehearsal.report import RehearsalReport
 from base_station.replay.timelines.unit_timeline import UnitTimeline
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
@@ -73,6 +75,21 @@ class ReportJob(msgspec.Struct, frozen=True, tag="report"):
     opened_ns: int
     closed_ns: int | None
     as_pdf: bool
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
+    archived: ArchivedLog | None = None  # read in the place of the station's own
+
+
+class RehearsalJob(msgspec.Struct, frozen=True, tag="rehearse"):
+    """First to a new process: to rehearse thresholds over an incident."""
+
+    log: str
+    checkpoints: str
+    database: str
+    incident_id: str
+    opened_ns: int
+    closed_ns: int | None
+    points: tuple[Thresholds, ...]
+    swept: str  # the threshold that a sweep changes; empty: it is none
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
     archived: ArchivedLog | None = None  # read in the place of the station's own
 
@@ -186,6 +203,12 @@ class ReportFrame(msgspec.Struct, frozen=True, tag="reported"):
     content: bytes
 
 
+class RehearsalFrame(msgspec.Struct, frozen=True, tag="rehearsed"):
+    """The last message: the outcome of the rehearsal."""
+
+    report: RehearsalReport
+
+
 class CaughtUp(msgspec.Struct, frozen=True, tag="caught_up"):
     """The last message: the log is projected to where it ended."""
 
@@ -223,13 +246,16 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
         return kind(text_with_code(self.reason, self.code))
 
 
-Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob | TimelineJob | ArchiveJob
+Job = (
+    ReplayJob | PostProcessingJob | ReportJob | RehearsalJob | CatchUpJob | TimelineJob | ArchiveJob
+)
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = (
     ProgressFrame | UnitTrailsFrame | PostProcessingResultFrame | Damage | Failure
 )
 IncidentReportResult = ReportFrame | Damage | Failure
+RehearsalResult = RehearsalFrame | Damage | Failure
 CatchUpResult = CaughtUp | Damage | Failure
 ArchiveReport = CopyFrame | CopiesDone | Damage | Failure
 TimelineResult = TimelineFrame | Damage | Failure
@@ -249,6 +275,7 @@ class FrameChannel:
         | ReplayReport
         | PostProcessingReport
         | ReportFrame
+        | RehearsalFrame
         | CaughtUp
         | TimelineFrame
         | CopyFrame
@@ -320,6 +347,11 @@ def read_post_processing_report(encoded: bytes) -> PostProcessingReport:
 
 def read_report_result(encoded: bytes) -> IncidentReportResult:
     result: IncidentReportResult = msgspec.msgpack.decode(encoded, type=IncidentReportResult)
+    return result
+
+
+def read_rehearsal_result(encoded: bytes) -> RehearsalResult:
+    result: RehearsalResult = msgspec.msgpack.decode(encoded, type=RehearsalResult)
     return result
 
 

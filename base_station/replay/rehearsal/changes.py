@@ -9,9 +9,11 @@ from collections.abc import Iterable, Sequence
 
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import Thresholds, require_threshold
+from shared.coded_text import coded
 from shared.errors import UserError
 
 MAX_POINTS = 100  # of a sweep: each is judged at every message
+_NOTHING = coded("rehearsal-nothing", "no threshold is given")
 _OF_PEOPLE = "rearm_after_s"
 _ROUNDING = 1e-9  # of steps: 0.1 has no exact binary number
 
@@ -47,14 +49,55 @@ def sweep_of(text: str) -> tuple[str, Sequence[float]]:
         raise UserError(f"{key}: a sweep is FIRST:LAST:STEP, such as 15:60:5, not {range_text!r}")
     first, last, step = (_number(key, part) for part in parts)
     if step <= 0.0 or last < first:
-        raise UserError(f"{key}: a sweep goes up from FIRST to LAST by a STEP above 0")
+        raise UserError(
+            coded(
+                "sweep-order",
+                "{threshold}: a sweep goes up from its first to its last value by a step above 0",
+                threshold=key,
+            )
+        )
     count = math.floor((last - first) / step + _ROUNDING) + 1
     if count > MAX_POINTS:
-        raise UserError(f"{key}: {count} values; at most {MAX_POINTS}, take a longer step")
+        raise UserError(
+            coded(
+                "sweep-long",
+                "{threshold}: {count} values; at most {most}, take a longer step",
+                threshold=key,
+                count=count,
+                most=MAX_POINTS,
+            )
+        )
     values = [round(first + step * number, 9) for number in range(count)]
     for value in values:
         _require(key, value)
     return key, values
+
+
+def points_of(changes: Thresholds, sweep: str) -> tuple[str, Sequence[Thresholds]]:
+    """The threshold that ``sweep`` changes, empty for none, and the sets of thresholds to rehearse.
+
+    Raises as ``sweep_of``, and UserError where there is nothing to rehearse, or one threshold is
+    given both ways.
+    """
+    if not sweep:
+        if not changes:
+            raise UserError(_NOTHING)
+        return "", [changes]
+    swept, values = sweep_of(sweep)
+    if swept in changes:
+        raise UserError(
+            coded(
+                "sweep-and-value",
+                "{threshold} is given by a value and by a sweep; leave one of them out",
+                threshold=swept,
+            )
+        )
+    return swept, [changes | {swept: value} for value in values]
+
+
+def can_be_rehearsed(name: str) -> bool:
+    """``name``: of a threshold, without its rule."""
+    return name != _OF_PEOPLE
 
 
 def _split(text: str, example: str) -> tuple[str, str]:
@@ -78,7 +121,7 @@ def _number(key: str, text: str) -> float:
 def _require(key: str, value: float) -> None:
     rule_name, _, field = key.partition(".")
     require_threshold(ALARMS, rule_name, field, value)
-    if field == _OF_PEOPLE:
+    if not can_be_rehearsed(field):
         raise UserError(
             f"{key} counts from when a person resolves an alarm; a rehearsal leaves out what "
             "people did with alarms, so it cannot show a difference"

@@ -33,7 +33,6 @@ from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import Window
 from shared.clock import NS_PER_S
-from shared.errors import UserError
 
 Progress = Callable[[float], None]
 _NS_PER_HOUR = 3600 * NS_PER_S
@@ -65,9 +64,8 @@ class Rehearser:
         on_progress: Progress = lambda _: None,
     ) -> RehearsalReport:
         """Judge by the rules that ``points`` change, with each of them and with the thresholds of
-        then; ``on_progress`` receives the fraction done.
-
-        Raises UserError where no point is possible: its thresholds contradict those of the log.
+        then; ``on_progress`` receives the fraction done.  A point whose thresholds contradict those
+        of the log has a problem and no figures.
         """
         rules = _rules_of(points)
         passes = []
@@ -110,9 +108,9 @@ class Rehearser:
         playback = Playback(replace(archive, make_pipeline=make_pipeline))
         for _ in playback.seek(from_ns):
             pass
-        if all(one.problem for one in rehearsals):
-            raise UserError(f"{rehearsals[0].problem}; give the other threshold with --set too")
-        while playback.advance(until_ns) is not None:
+        while not all(one.problem for one in rehearsals):
+            if playback.advance(until_ns) is None:
+                break
             on_progress((playback.at_ns - from_ns) / max(until_ns - from_ns, 1))
         on_progress(1.0)
         raised = self._records.alarms(Window(from_ns, until_ns + 1))

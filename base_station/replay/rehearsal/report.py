@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-import msgspec
-
 from base_station.core.alarms.interface import AlarmRule
 from base_station.core.alarms.thresholds import Thresholds
 from base_station.replay.rehearsal.episodes import EpisodeOutcome, EpisodePair
+from base_station.views.answer import Answer
 from shared.clock import NS_PER_MS, NS_PER_S
 
 
-class RehearsedIncident(msgspec.Struct, frozen=True):
+class RehearsedIncident(Answer, frozen=True):
+    """One incident over which thresholds were rehearsed."""
+
     incident_id: str
     worn_h: float  # added up over the units that were worn
     live_alarms: dict[str, int]  # by rule: raised at the time, and kept by the station
 
 
-class EpisodeChange(msgspec.Struct, frozen=True):
+class EpisodeChange(Answer, frozen=True):
     """An episode that the rehearsed thresholds found otherwise; times in ms since 1970, UTC."""
 
     incident_id: str
@@ -31,7 +32,7 @@ class EpisodeChange(msgspec.Struct, frozen=True):
     rehearsed_ms: int | None
 
 
-class LevelFigures(msgspec.Struct, frozen=True):
+class LevelFigures(Answer, frozen=True):
     """Figures of one level of one rule, over all incidents."""
 
     rule: str
@@ -48,7 +49,7 @@ class LevelFigures(msgspec.Struct, frozen=True):
     rehearsed_per_hour: float | None
 
 
-class RehearsedPoint(msgspec.Struct, frozen=True):
+class RehearsedPoint(Answer, frozen=True):
     """One set of thresholds."""
 
     thresholds: Thresholds  # the rehearsed ones, by ``rule.field``
@@ -57,7 +58,9 @@ class RehearsedPoint(msgspec.Struct, frozen=True):
     changes: tuple[EpisodeChange, ...] = ()
 
 
-class RehearsalReport(msgspec.Struct, frozen=True):
+class RehearsalReport(Answer, frozen=True):
+    """Outcome of a rehearsal, or of a sweep over one threshold."""
+
     incidents: tuple[RehearsedIncident, ...]
     points: tuple[RehearsedPoint, ...]  # one, or those of a sweep
     swept: str = ""  # the threshold that a sweep changes

@@ -60,6 +60,18 @@ export interface DispatchView {
   warning_codes: TextCodeView[];
 }
 
+export interface EpisodeChange {
+  incident_id: string;
+  unit_id: string;
+  rule: string;
+  level: string;
+  outcome: EpisodeOutcome;
+  recorded_ms: number | null;
+  rehearsed_ms: number | null;
+}
+
+export type EpisodeOutcome = "same" | "earlier" | "later" | "missed" | "added";
+
 export interface Figures {
   ce50_m: number;
   ce95_m: number;
@@ -123,6 +135,21 @@ export interface IncidentReport {
   is_newest: boolean;
 }
 
+export interface LevelFigures {
+  rule: string;
+  level: string;
+  recorded: number;
+  rehearsed: number;
+  same: number;
+  earlier: number;
+  later: number;
+  missed: number;
+  added: number;
+  median_shift_s: number | null;
+  recorded_per_hour: number | null;
+  rehearsed_per_hour: number | null;
+}
+
 export interface Member {
   unit_id: string;
   person_id: string | null;
@@ -183,6 +210,31 @@ export interface Raising {
   text: string;
   code: string;
   parameters: AlarmParametersView;
+}
+
+export interface RehearsalAnswer {
+  incident_id: string;
+  worn_h: number;
+  live_alarms: Record<string, number>;
+  swept: string;
+  points: RehearsedPoint[];
+  wearers: Record<string, string[]>;
+  flaws: string[];
+}
+
+export interface RehearsedPoint {
+  thresholds: Record<string, number>;
+  problem: string;
+  levels: LevelFigures[];
+  changes: EpisodeChange[];
+}
+
+export interface ThresholdAnswer {
+  rule: string;
+  threshold: string;
+  value: number;
+  lowest: number;
+  highest: number;
 }
 
 export interface TrustReport {

@@ -18,6 +18,7 @@ import { HealthDialog } from "./HealthDialog";
 import { ImportsDialog } from "./ImportsDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
+import { RehearsalDialog } from "./RehearsalDialog";
 import { ResolveDialog } from "./ResolveDialog";
 import { RollCallDialog } from "./RollCallDialog";
 import { SiteDialog } from "./SiteDialog";
@@ -49,6 +50,8 @@ function Opened() {
       return <ImportsDialog />;
     case "assessment":
       return <AssessmentDialog />;
+    case "rehearsal":
+      return <RehearsalDialog />;
     case "people":
       return <PeopleDialog />;
     case "units":

@@ -5,7 +5,7 @@ import { unfinished } from "../live/closing";
 import type { Picture } from "../live/picture";
 import { summary } from "../live/dispatch";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
-import { assess, openDispatch, openImports } from "../uiState";
+import { assess, openDispatch, openImports, openRehearsal } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
@@ -129,7 +129,16 @@ export function IncidentsDialog() {
                   onClick={() => assess(incident)}
                 >
                   {t("incident.accuracy")}
-                </button>
+                </button>{" "}
+                {incident.closed_ms !== null && (
+                  <button
+                    type="button"
+                    aria-label={t("incident.rehearse_of", { incident: incident.name })}
+                    onClick={() => openRehearsal(incident)}
+                  >
+                    {t("incident.rehearse")}
+                  </button>
+                )}
               </td>
               {forgets && (
                 <td>

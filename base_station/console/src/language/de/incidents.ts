@@ -19,6 +19,8 @@ export const incident: Part<"incident"> = {
   erased_at: "Personendaten gelöscht {time}",
   replay_of: "Wiedergabe: {incident}",
   accuracy: "Genauigkeit",
+  rehearse: "Schwellen",
+  rehearse_of: "Andere Alarmschwellen: {incident}",
   erase_warning: "Wer dort war und wo, wird gelöscht.",
   erase_warning_beside:
     "Wer dort war und wo, wird gelöscht. Von Einsätzen, die gleichzeitig liefen ({others}), bleibt alles; Funkaufnahmen aus dieser Zeit bleiben, bis auch diese gelöscht werden.",

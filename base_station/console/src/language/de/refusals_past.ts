@@ -94,12 +94,28 @@ export const refusal_past: Part<"refusal_past"> = {
     "Eine Wiedergabe läuft mit dem {slowest}- bis {fastest}-Fachen der Echtzeit, nicht {speed}",
   "replays-too-many":
     "{most} Wiedergaben sind schon offen; beenden Sie eine davon",
+  "rehearsal-by-terminal":
+    "Erproben Sie ihn an der Kommandozeile: muster base rehearse --incident {incident}.",
+  "rehearsal-none":
+    "Es gibt keine Erprobung: {reason}.",
+  "rehearsal-nothing":
+    "kein Schwellenwert ist angegeben",
+  "rehearsal-open":
+    "Der Einsatz ist offen; erproben Sie ihn, sobald er geschlossen ist.",
+  "rehearsal-wrong":
+    "Nicht erprobt: {reason}.",
   "report-by-terminal":
     "Erstellen Sie ihn an der Kommandozeile: muster base report {incident}.",
   "report-library-missing":
     "Die Bibliothek weasyprint, die PDF schreibt, ist nicht installiert: pip install --require-hashes -r deploy/requirements-report.lock; oder drucken Sie den HTML-Bericht im Browser",
   "report-none":
     "Es gibt keinen Bericht: {reason}.",
+  "sweep-and-value":
+    "{threshold} ist als Wert und als Reihe angegeben; lassen Sie eines davon weg",
+  "sweep-long":
+    "{threshold}: {count} Werte; höchstens {most}, nehmen Sie einen größeren Schritt",
+  "sweep-order":
+    "{threshold}: eine Reihe geht vom ersten zum letzten Wert aufwärts, mit einem Schritt über 0",
   "timeline-no-log":
     "Diese Station hat keine Aufzeichnung, aus der sie zu lesen wäre.",
   "timeline-no-unit":

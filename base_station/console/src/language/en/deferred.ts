@@ -13,4 +13,5 @@ export * from "./refusals_past";
 export * from "./refusals_people";
 export * from "./refusals_plan";
 export * from "./refusals_station";
+export * from "./rehearsals";
 export * from "./transfer_problems";

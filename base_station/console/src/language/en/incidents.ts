@@ -18,6 +18,8 @@ export const incident = {
   erased_at: "data of its people erased {time}",
   replay_of: "Replay {incident}",
   accuracy: "Accuracy report",
+  rehearse: "Thresholds",
+  rehearse_of: "Other alarm thresholds: {incident}",
   erase_warning: "Who was there and where is deleted.",
   erase_warning_beside:
     "Who was there and where is deleted. Of incidents that were open at the same time ({others}) everything stays; radio recordings of that time stay until those are deleted, too.",

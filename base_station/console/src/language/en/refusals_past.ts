@@ -92,12 +92,28 @@ export const refusal_past = {
     "a replay runs at {slowest} to {fastest} times real time, not {speed}",
   "replays-too-many":
     "{most} replays are open already; end one of them",
+  "rehearsal-by-terminal":
+    "Rehearse it with the terminal: muster base rehearse --incident {incident}.",
+  "rehearsal-none":
+    "There is no rehearsal: {reason}.",
+  "rehearsal-nothing":
+    "no threshold is given",
+  "rehearsal-open":
+    "The incident is open; rehearse it once it is closed.",
+  "rehearsal-wrong":
+    "Not rehearsed: {reason}.",
   "report-by-terminal":
     "Make it with the terminal: muster base report {incident}.",
   "report-library-missing":
     "the library weasyprint, which writes PDF, is not installed: pip install --require-hashes -r deploy/requirements-report.lock; or print the HTML report in a browser",
   "report-none":
     "There is no report: {reason}.",
+  "sweep-and-value":
+    "{threshold} is given by a value and by a sweep; leave one of them out",
+  "sweep-long":
+    "{threshold}: {count} values; at most {most}, take a longer step",
+  "sweep-order":
+    "{threshold}: a sweep goes up from its first to its last value by a step above 0",
   "timeline-no-log":
     "This station has no log to read it from.",
   "timeline-no-unit":

@@ -19,6 +19,8 @@ export const incident: Part<"incident"> = {
   erased_at: "données des personnes effacées {time}",
   replay_of: "Relecture\u00a0: {incident}",
   accuracy: "Précision",
+  rehearse: "Seuils",
+  rehearse_of: "Autres seuils d’alarme\u00a0: {incident}",
   erase_warning: "Qui était là et où est effacé.",
   erase_warning_beside:
     "Qui était là et où est effacé. Des interventions ouvertes en même temps ({others}), tout reste\u00a0; les enregistrements radio de ce temps restent jusqu’à ce que celles-ci soient effacées aussi.",

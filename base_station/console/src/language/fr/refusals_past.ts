@@ -94,12 +94,28 @@ export const refusal_past: Part<"refusal_past"> = {
     "Une relecture va de {slowest} à {fastest} fois le temps réel, et non {speed}",
   "replays-too-many":
     "{most} relectures sont déjà ouvertes\u00a0; terminez-en une",
+  "rehearsal-by-terminal":
+    "Faites l’essai en ligne de commande\u00a0: muster base rehearse --incident {incident}.",
+  "rehearsal-none":
+    "Il n’y a pas d’essai\u00a0: {reason}.",
+  "rehearsal-nothing":
+    "aucun seuil n’est donné",
+  "rehearsal-open":
+    "L’intervention est ouverte\u00a0; faites l’essai une fois qu’elle est terminée.",
+  "rehearsal-wrong":
+    "Essai non fait\u00a0: {reason}.",
   "report-by-terminal":
     "Faites-le en ligne de commande\u00a0: muster base report {incident}.",
   "report-library-missing":
     "La bibliothèque weasyprint, qui écrit le PDF, n’est pas installée\u00a0: pip install --require-hashes -r deploy/requirements-report.lock\u00a0; ou imprimez le rapport HTML dans un navigateur",
   "report-none":
     "Il n’y a pas de rapport\u00a0: {reason}.",
+  "sweep-and-value":
+    "{threshold} est donné par une valeur et par une série\u00a0; supprimez l’une des deux",
+  "sweep-long":
+    "{threshold}\u00a0: {count} valeurs\u00a0; {most} au plus, prenez un pas plus grand",
+  "sweep-order":
+    "{threshold}\u00a0: une série monte de la première à la dernière valeur par un pas supérieur à 0",
   "timeline-no-log":
     "Cette station n’a pas de journal pour la lire.",
   "timeline-no-unit":
