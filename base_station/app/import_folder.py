@@ -56,10 +56,23 @@ class FolderImports:
     by: str
     is_locked: bool  # no station runs on the folder
 
-    def import_file(self, file: Path, shift_s: float, utc_offset_h: float | None) -> Sequence[str]:
-        """Gives lines about the content.  Raises UserError with the fault of the file."""
+    def require_anchor(self) -> None:
+        """Raises UserError where the incident has no place on the Earth: nothing is taken then."""
+        require_anchor(Records(self.store, SystemClock()), self.incident)
+
+    def import_file(
+        self,
+        file: Path,
+        shift_s: float = 0.0,
+        utc_offset_h: float | None = None,
+        name: str = "",
+    ) -> Sequence[str]:
+        """Gives lines about the content; ``name``: another one than the file's own.  Raises
+        UserError with the fault of the file.
+        """
         desk = self._desk()
-        options = ImportOptions(file.name, self.incident.incident_id, shift_s, utc_offset_h)
+        incident_id = self.incident.incident_id
+        options = ImportOptions(name or file.name, incident_id, shift_s, utc_offset_h)
         with self._catalogue.folder.incoming() as path:
             try:
                 self._catalogue.folder.require_room(file.stat().st_size)
@@ -67,7 +80,7 @@ class FolderImports:
                 raise UserError(f"{file} cannot be read: {error.strerror or error}") from error
             self._catalogue.folder.copy(file, path)
             import_id = desk.import_file(path, options, self._act)
-        row = self._catalogue.entry(self.incident.incident_id, import_id)
+        row = self._catalogue.entry(incident_id, import_id)
         return [] if row is None else [self._line(row), *self._warnings(row)]
 
     def remove(self, import_id: str) -> str:

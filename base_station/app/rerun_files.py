@@ -14,21 +14,23 @@ from base_station.replay.assessment.wearers import wearers
 from base_station.report.rerun_page import rerun_page
 from shared.out_file import whole
 
+TRAILS = "trails.gpx"  # where the site has its place on the Earth
+
 
 def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
     """Names of the files, each of which is whole or not there.  Raises UserError."""
     worn = wearers(opened.roster, opened.incident, opened.records.members_of(opened.incident))
     names = {unit_id: ", ".join(people) for unit_id, people in worn.items()}
     tracks = incident_tracks(opened.records, opened.roster, opened.incident, result.rerun)
+    title = (
+        f"tracked again with {result.report.tracker}" if result.report.tracker else "tracked again"
+    )
     formats = ["csv", "gpx"] if tracks.anchor is not None else ["csv"]
     page = rerun_page(result.report, opened.plan, result.shown, result.rerun, names)
     contents: dict[str, Iterable[bytes]] = {
         "report.json": [msgspec.json.format(msgspec.json.encode(result.report)), b"\n"],
         "report.html": [page],
-        **{
-            f"trails.{one}": exporter_of(one).export(tracks.named_as("tracked again"))
-            for one in formats
-        },
+        **{f"trails.{one}": exporter_of(one).export(tracks.named_as(title)) for one in formats},
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():

@@ -10,10 +10,12 @@ import msgspec
 import pytest
 from typer.testing import CliRunner, Result
 
+from base_station.app.folder_commands import rebuild
 from base_station.cli import app
 from base_station.replay.rerun.comparison import RerunReport
 from shared.errors import RecordingError, UserError
 from shared.mcap_log import SegmentPolicy, SegmentWriter, read_log, segment_paths
+from shared.messages.station import SetAnchor
 from tests.rig.retracked_incident import write_incident
 
 SCENARIOS = {"FF-01": "search-ground-floor?seed=1", "FF-02": "search-ground-floor?seed=2"}
@@ -75,6 +77,26 @@ def test_other_tracker_gives_another_trail(given: RerunFolders, tmp_path: Path) 
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert page.count("stroke-dasharray") >= 2
     assert "Person 0 (FF-01)" in page
+
+
+def test_kept_trails_are_brought_into_the_incident_once(
+    given: RerunFolders, tmp_path: Path
+) -> None:
+    anchored = write_incident(
+        tmp_path, {"FF-01": SCENARIOS["FF-01"]}, 30.0, anchor=SetAnchor(52.0, 4.0, 0.0, 0.0)
+    )
+    rebuild(anchored, lambda _: None)
+    options = ("--recording", str(tmp_path / "units"), "--out", str(tmp_path / "out"), "--keep")
+    for _ in range(2):
+        result = rerun(anchored, *options, "--tracker", "huang")
+        assert result.exit_code == 0, (result.output, result.exception)
+    listed = CliRunner().invoke(app, ["import", "i1", "--data", str(anchored)]).output
+    (line,) = listed.splitlines()
+    assert "\trerun-huang.gpx\tgpx\t1 tracks\t" in line
+    assert "by muster base rerun" in line
+    rebuild(given.station, lambda _: None)
+    with pytest.raises(UserError, match="place on the Earth"):
+        raise rerun(given.station, *options).exception or AssertionError
 
 
 def test_interrupted_rerun_continues_from_finished_parts(

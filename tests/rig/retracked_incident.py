@@ -18,7 +18,7 @@ from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.header_factory import HeaderFactory
 from shared.mcap_log import SegmentPolicy, SegmentWriter
-from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart
+from shared.messages.station import Assign, CloseIncident, OpenIncident, SetAnchor, SetStart
 from tests.rig.reported_incident import write_log
 from tests.rig.station_script import START_NS, Script
 
@@ -29,7 +29,11 @@ Sent = tuple[int, str, bytes]  # time in ns since the units were switched on, ke
 
 
 def write_incident(
-    folder: Path, scenarios: dict[str, str], duration_s: float, opened_s: float = 10.0
+    folder: Path,
+    scenarios: dict[str, str],
+    duration_s: float,
+    opened_s: float = 10.0,
+    anchor: SetAnchor | None = None,
 ) -> Path:
     """Write the log below ``folder / "station"`` and the units' folders below ``folder / "units"``;
     return the first.  ``scenarios``: simulated sources by unit; the incident is opened later than
@@ -37,6 +41,8 @@ def write_incident(
     """
     script = Script()
     script.register(*scenarios)
+    if anchor is not None:
+        script.act(anchor)
     for number, unit_id in enumerate(scenarios):
         script.act(Assign(unit_id, f"p{number}", f"Person {number}", "red", ""))
     units = [
