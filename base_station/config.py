@@ -210,7 +210,7 @@ class StationConfig(ServerConfig):
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
     radio: dict[str, RadioConfig] = field(default_factory=dict)  # recorded channels by name
     archive: ArchiveConfig | None = None  # None: incidents are archived by a command alone
-    retention: RetentionConfig | None = None  # None: incidents are kept until somebody erases them
+    retention: RetentionConfig | None = None  # None: incidents are kept until a user erases them
     department: DepartmentConfig | None = None  # to which this station reports; None: to none
 
     def forwarders(self) -> Mapping[str, Mapping[str, Any]]:

@@ -18,7 +18,7 @@ FiguresFile = Annotated[
 
 
 def write_figures(path: Path | None, figures: object) -> None:
-    """As JSON, where a file was asked for; ``figures`` may be or hold dataclasses."""
+    """Write figures as JSON, where a file is given; ``figures`` may be or hold dataclasses."""
     if path is not None:
         with whole(path) as making:
             text = json.dumps(figures, indent=2, default=asdict)

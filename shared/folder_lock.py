@@ -1,7 +1,6 @@
-"""One program at a time for a folder; the system lets go when the program dies.
-
-The folder itself is locked: that holds whatever becomes of the files in it.  So is the file
-``lock``, which says who holds it, and which earlier versions went by alone.
+"""Lock of a folder for one program; the system releases it when the program ends.  The folder
+itself is locked, so that changes of its files do not matter.  So is the file ``lock``, which names
+the holder, and is the only lock of earlier versions.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor"
 MOST_BYTES = 2 * 1024 * 1024
 # Messages and answers of units are far smaller: larger ones are dropped at the router.
 MOST_PUBLISHED_BYTES = 64 * 1024
-MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
+MOST_ANSWERED_BYTES = 1024 * 1024  # twice the size of a request
 _LARGEST = (
     ("published", "put", MOST_PUBLISHED_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
     ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),

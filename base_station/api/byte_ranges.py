@@ -11,7 +11,7 @@ _RANGE = re.compile(r"bytes=(\d*)-(\d*)")
 
 
 def ranged_response(content: bytes, media_type: str, request: Request) -> Response:
-    """All of it, or the one range that is asked for; several at once are answered with all."""
+    """Return the requested range; the whole content without one, or with several."""
     etag = f'"{hashlib.sha256(content).hexdigest()[:32]}"'
     headers = {"Accept-Ranges": "bytes", "ETag": etag}
     asked = _RANGE.fullmatch(request.headers.get("Range", "").strip())

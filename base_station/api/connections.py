@@ -35,7 +35,7 @@ class ConnectionLimitedSocket(socket.socket):
         self._count_of: Counter[str] = Counter()  # by network, with those just gone
 
     def accept(self) -> tuple[socket.socket, Any]:
-        """Raises ConnectionAbortedError in the place of one too many, which it lets go."""
+        """Accept a connection; one above the limit is closed, with ConnectionAbortedError."""
         accepted, address = super().accept()
         network = network_of(address[0])
         if self._is_full(network):  # some of its connections may have gone

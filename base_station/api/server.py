@@ -30,7 +30,7 @@ _SHUTDOWN_GRACE_S = 5
 _HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
 _ACCEPTS_PER_WAKEUP = 16  # before existing connections are served again
-_MAX_MESSAGE_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
+_MAX_MESSAGE_BYTES = 4096  # over a WebSocket: the only request is for a snapshot
 _REQUEST_TIMEOUT_S = 10.0  # the head of a request, and before it the greeting of TLS
 # A body comes at this rate at least, for a radio that loses much, or it is not waited for.
 _BODY_TIMEOUT_S = 20.0

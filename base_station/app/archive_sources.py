@@ -47,9 +47,8 @@ NOT_FETCHED = (
 def open_archived_log(
     archive: ArchiveStore, incident_id: str, closing: ExitStack, report: Report
 ) -> OfflineLog:
-    """An incident where it is in the archive: little of it is fetched until it is asked for.
-
-    Raises ArchiveError.
+    """Open the log of an archived incident; its content is fetched when it is read.  Raises
+    ArchiveError.
     """
     entry = require_entry(archive, incident_id)
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-archived-")))

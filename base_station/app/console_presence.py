@@ -1,4 +1,4 @@
-"""Name of the console on its network, such as ``muster.local``, where that is asked for."""
+"""Name of the console on its network, such as ``muster.local``, if the settings have one."""
 
 from __future__ import annotations
 

@@ -109,7 +109,9 @@ def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]
     lock = folder.lock()
     try:
         for by, order in orders_behind(folder.log, place):
-            if by == BY_OTHER_STATION:  # a request of the other's that is done: nobody repeats it
+            if (
+                by == BY_OTHER_STATION
+            ):  # a finished request of the other station, which is not repeated
                 request_again(folder.erasure_jobs, order.kind, order.subject_id)
         # It must not have events of the cut part, however this ends.
         with open_database(folder.database) as store:
@@ -177,7 +179,7 @@ def _erasure_service(folder: DataFolder, store: Database) -> ErasureService:
 
 @dataclass(frozen=True)
 class _Subject:
-    """A person or an incident that is to be forgotten."""
+    """Person or incident to erase."""
 
     kind: str
     subject_id: str

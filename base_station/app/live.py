@@ -1,4 +1,4 @@
-"""Program of the live station: runs it, and starts it anew where that is asked for."""
+"""Program of the live station: runs it, and restarts it on request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Announcement of the station on its network, where that is asked for.
+"""Announcement of the station on its network, if the settings have it.
 
 A unit verifies the address that it connects to by the station's certificate.  So only addresses
 that the certificate stands for are announced; where it stands for none, the health page shows it.

@@ -206,7 +206,7 @@ def open_storage(
     check = IntegrityChecker(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
     newest = max((one.path for one in recorder.segments()), default=None)
     for recovery in recorder.recoveries:
-        # Of the newest one a kill costs the last half second, and nothing that was promised.
+        # A kill may lose the last half second of the newest one, but no acknowledged record.
         if recovery.damage or (recovery.bytes_lost and recovery.path != newest):
             check.note_damaged(recovery.path, str(recovery), is_cut=True)
     check.note_foreign(recorder.foreign)

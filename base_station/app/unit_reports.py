@@ -30,7 +30,7 @@ class UnitReports:
         self.backfill.report(held, refused, alerts_only=in_memory)
 
     def count_missing(self) -> None:
-        """The log was found to have messages no more: they are asked for again."""
+        """Note that the log has lost messages, which are then queried again."""
         self._missing_count += 1
 
     def _may_acknowledge(self) -> bool:

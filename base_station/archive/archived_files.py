@@ -1,4 +1,4 @@
-"""Files and audio that a copy in an archive has beside its log, fetched when they are asked for."""
+"""Files and audio that a copy in an archive has beside its log, fetched when they are read."""
 
 from __future__ import annotations
 

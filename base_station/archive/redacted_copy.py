@@ -40,7 +40,7 @@ _ACTIONS = OPERATOR.key(STATION_ID)
 
 
 class CopyIncompleteError(ArchiveError):
-    """A copy has a part of an incident that was erased, and does not tell of whom."""
+    """A copy has a part of an erased incident without the ids of the people in it."""
 
 
 class ErasedSubjects(NamedTuple):

@@ -16,7 +16,7 @@ from base_station.drawings.shapes import Point
 
 _GRID_M = 1e-4  # ends of segments that are one point
 _SHEET_M = 0.04  # thickness of a surface that bounds no solid
-_CLOSED_M = 0.05  # gaps of twice as much between walls are joints, through which nobody passes
+_CLOSED_M = 0.05  # gaps of twice this between walls are joints, and no passages
 _ROUGH_M = 0.02
 _LEAST_M2 = 0.01  # of a piece of wall
 _LEAST_INSIDE_M2 = 4.0  # that an outline encloses

@@ -123,7 +123,7 @@ def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[in
         try:
             return _to_ns(datetime.fromisoformat(f"{local.isoformat()}{zone}")), ""
         except ValueError:
-            pass  # a zone that makes no sense states nothing
+            pass  # an invalid time zone is ignored
     if utc_offset_h is not None:
         return _to_ns(local.replace(tzinfo=timezone(timedelta(hours=utc_offset_h)))), ""
     if fix_ns is None:

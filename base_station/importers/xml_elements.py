@@ -88,7 +88,9 @@ def is_xml_of(head: bytes, root: str) -> bool:
 
 
 def point_of(time: str, lat: str, lon: str, height: str) -> ImportedPoint | None:
-    """None where one of them is missing or makes no sense; a height need not be there."""
+    """Return a point; None where time, latitude or longitude is missing or not valid.  A height is
+    optional.
+    """
     try:
         t_ns = _utc_ns(time)
         lat_deg, lon_deg = float(lat), float(lon)

@@ -87,7 +87,7 @@ class RecordingTransfers(Protocol):
     """Raw recordings that are being pulled from units."""
 
     def forget(self, unit_ids: Collection[str]) -> None:
-        """None of these units is asked for more."""
+        """End all transfers from these units."""
         ...
 
 
@@ -108,10 +108,10 @@ class ErasureService:
         erase_audio: EraseAudio = lambda _from_ns, _until_ns: 0,
     ) -> None:
         """``act`` has the running station forget what it holds in memory, and order the erasure;
-        None: no station runs on the folder.  ``is_repair_pending``: True where the
-        lost part of a segment is about to be fetched from the other station.
-        ``forget_name`` has it show a person's name no more.  ``erase_audio`` is called for a whole
-        incident alone: in what is spoken nobody can tell who speaks.
+        None: no station runs on the folder.  ``is_repair_pending``: True where the lost part of a
+        segment is about to be fetched from the other station.  ``forget_name`` has it show a
+        person's name no more.  ``erase_audio`` is called for a whole incident alone: speakers
+        cannot be told apart in audio.
         """
         self._log = log
         self._reading = LogReading(log)
@@ -137,8 +137,8 @@ class ErasureService:
         *,
         from_peer: bool = False,
     ) -> ErasureResult:
-        """``from_peer``: the other station has erased it.  UserError where nobody has ever heard of
-        that person; tried again, everything may be gone but for the entry in the audit.
+        """``from_peer``: the other station has erased it.  UserError where the person is unknown;
+        at a repeated erasure only the audit may still have an entry.
         """
         progress = progress or ErasureProgress()
         found, is_known = self._erasure_of_person(person_id, None)
@@ -149,7 +149,7 @@ class ErasureService:
         return self._erase(by, erasure, order, f"{PERSON} {person_id}", on_progress, progress)
 
     def require_person(self, person_id: str) -> None:
-        """UserError where nobody has ever heard of that person."""
+        """Raise UserError where the person is unknown."""
         if not self._erasure_of_person(person_id, None)[1]:
             raise _unknown(person_id)
 

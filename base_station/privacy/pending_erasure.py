@@ -58,7 +58,7 @@ class PendingErasure:
         self._write([*self._read(), erasure])
 
     def remove(self, incident_id: str) -> None:
-        """Nothing is left that it tells of.  Raises StoreError."""
+        """Remove it, as all of its data is erased.  Raises StoreError."""
         begun = self._read()
         left = [one for one in begun if one.incident_id != incident_id]
         if len(left) < len(begun):

@@ -35,7 +35,7 @@ def encode_problem(text: str) -> bytes:
 
 
 def decode_problem(content: bytes) -> str:
-    """The sentence with its code; msgspec.DecodeError where the content makes no sense."""
+    """The sentence with its code; msgspec.DecodeError where the content is not valid."""
     problem = msgspec.json.decode(content, type=_ProblemText)
     return text_with_code(problem.text, problem.code)
 
@@ -50,7 +50,7 @@ class CaptureDecoder:
         self._waiting = b""
 
     def push(self, data: bytes) -> Iterator[Captured]:
-        """Give complete packets; ValueError where the data makes no sense."""
+        """Return complete packets; ValueError where the data is not valid."""
         self._waiting += data
         while len(self._waiting) >= _HEAD.size:
             kind, t_mono_ns, length = _HEAD.unpack_from(self._waiting)

@@ -260,8 +260,8 @@ def _iso(t_ns: int) -> str:
 
 
 def read_incident_file(path: Path) -> IncidentInFile | None:
-    """None where it is no such file, or is not complete.  Raises UserError where it is one and
-    makes no sense.
+    """None where it is no such file, or is not complete.  Raises UserError where it is one and not
+    valid.
     """
     enclosed = enclosures_of(path)
     about = enclosed.metadata.get(METADATA_NAME)

@@ -50,7 +50,7 @@ class Archive:
     flaws: Callable[[], Sequence[str]] = tuple
     # Checks a little more of the log for defects; False: all of it is checked.
     check_next_chunk: Callable[[], bool] = lambda: False
-    note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found
+    note: Callable[[str], object] = lambda _: None  # a defect that another reader has found
     console: ReadLog | None = None  # recorded content of consoles; None: it is computed again
     has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time
 

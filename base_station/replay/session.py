@@ -29,7 +29,7 @@ DELTA_S = 0.05
 CHECK_NS = 20 * NS_PER_MS  # of each turn, for the check of the log for flaws
 WHOLE_NS = NS_PER_S  # live, consoles receive the station's health and backfilled trails as often
 GRACE_S = 2.0  # for its thread to end
-PAUSED_S = 1.0  # a console that receives nothing for longer believes its link dead
+PAUSED_S = 1.0  # a console without messages for longer treats its link as lost
 MOST_FLAWS = 20  # that are published: with every change
 
 _log = logging.getLogger(__name__)
@@ -106,7 +106,7 @@ class ReplaySession:
             if not self._playing:
                 self._moved_ns = self._clock.monotonic_ns()
             if self._away and self._seek_ns is None:
-                self._seek_ns = self._at_ns  # it is asked once more
+                self._seek_ns = self._at_ns  # the seek is repeated
             self._playing = True
         self._news.set()
 
@@ -205,9 +205,7 @@ class ReplaySession:
             self._news.clear()
 
     def _stop_for_archive(self, error: ArchiveError) -> None:
-        """It stands where it is until somebody plays or seeks.  Raises the error where nothing was
-        shown yet.
-        """
+        """Pause until a user plays or seeks.  Raises the error where nothing was shown yet."""
         if not self._is_shown:
             raise error
         _log.warning("the replay of %s stands still: %s", self._window.incident_id, error)

@@ -16,8 +16,8 @@ from base_station.routing.way_graph import WayGraph
 def routes_to(
     graph: WayGraph, unit_id: str, rescuer_ids: Iterable[str], most: int | None = None
 ) -> dict[str, Route]:
-    """Shortest routes of those for whom a way to the unit is known, the nearest first; at ``most``
-    so many.
+    """Return the shortest routes to the unit, of people that have one, the nearest first; ``most``:
+    their number.
     """
     if unit_id not in graph.nodes:
         return {}

@@ -101,7 +101,7 @@ class BranchMerge:
         """Merge all branches of the standby; ``stop`` ends it early, and the next round begins the
         unfinished branch again.
 
-        Raises MusterError where the other station's answer makes no sense.
+        Raises MusterError where the other station's answer is not valid.
         """
         station = self._other()
         if station is None:

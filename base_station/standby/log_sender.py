@@ -22,7 +22,7 @@ _GATHER_S = 0.01  # events in quick succession are sent together
 
 
 class DiskReader:
-    """Goes on where it stopped, as long as it is asked in order; for one thread."""
+    """Reader that continues where it stopped, if positions are read in order; for one thread."""
 
     def __init__(self, disk: LogFeed) -> None:
         self._disk = disk

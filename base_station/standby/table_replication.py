@@ -197,7 +197,7 @@ class TableReplication:
             return
         new = self._tables.unknown_audit(entries)
         early = next((one for one in new if not self._can_take(one)), None)
-        if early is not None:  # it is asked for again
+        if early is not None:  # it is requested again
             new = new[: new.index(early)]
             entries = entries[: entries.index(early)]
         for entry in new:

@@ -26,9 +26,9 @@ _LEG_STEADY_COS = 0.7
 _STRAIGHT_RADPS = 0.35  # about up: who turns goes nowhere in particular
 _PERIODIC = 0.5  # autocorrelation after a step, or a stride of a leg
 _LEARNT_SHARE = 0.1  # of a new walk in the axes
-_AGAINST_SHARE = 0.02  # of one in the opposite direction: nobody goes backward for long
+_AGAINST_SHARE = 0.02  # of one in the opposite direction: people walk backward only shortly
 _WORN_OTHERWISE_COS = 0.9  # of up and up as it was learnt, in two walks in a row
-_FORWARD_WALKS = 2  # until the direction forward is believed
+_FORWARD_WALKS = 2  # until the forward direction is used
 _FORWARD_AGREES = 0.6  # length of their mean direction
 
 

@@ -16,7 +16,7 @@ from shared.messages import Mobility
 
 _LONG_STRIDE_M = 0.9  # few step so far backward or to a side
 _LEARNT_SHARE = 0.1
-_AGAINST_SHARE = 0.02  # of one that contradicts: nobody goes backward for long
+_AGAINST_SHARE = 0.02  # of one that contradicts: people walk backward only shortly
 _SOME_LONG = 3
 _SECTOR_RAD = pi / 4.0  # about forward, and about backward
 _ON_THE_SPOT_M = 0.45

@@ -134,7 +134,7 @@ def _start_check(
     sensors: tuple[FittedSensor, ...],
     certificate: TlsIdentity | None,
 ) -> StartCheck | None:
-    """Build the check at the start, of a unit with sensors that are read as time goes by."""
+    """Build the check at the start, for a unit with live sensors."""
     if speed is None or isinstance(source, BusSource):
         return None
 

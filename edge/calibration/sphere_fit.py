@@ -48,8 +48,8 @@ def fit_sphere(
 ) -> SphereFit:
     """Fit vectors (n, 3), starting from ``gain`` (3, 3) and ``centre`` (3,).
 
-    ``noise`` is the least standard deviation of a length (of 1) that is believed, since few
-    vectors fit well by chance.  Raises ``LinAlgError`` where the vectors leave a freedom.
+    ``noise`` is the smallest standard deviation of a length (of 1) that is used, because few
+    vectors may fit well by chance.  Raises ``LinAlgError`` where the vectors leave a freedom.
     """
     values = np.concatenate(([gain[entry] for entry in shape.entries], centre))
     errors, slopes = _errors(values, vectors, shape)

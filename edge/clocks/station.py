@@ -1,7 +1,6 @@
-"""Station clock of a unit: queries the station's time now and then, and stamps by it.
-
-Monotonic time is the machine's own and is what tracking goes by.  Until the station has answered
-once, UTC is the machine's, and nothing is claimed of how good that is.
+"""Station clock of a unit: queries the station's time at intervals.  Monotonic time is the
+machine's own, and tracking uses it.  Until the first answer of the station, UTC is the machine's,
+without a stated accuracy.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ class AuxiliarySurvey:
                 self._buttons.add(sample.button)
 
     def findings(self, *, asks_press: bool = True) -> Iterator[CheckFinding]:
-        """``asks_press``: a person was asked to press the button."""
+        """``asks_press``: a person was requested to press the button."""
         yield from self._temperature()
         yield from self._battery()
         yield from self._gnss()

@@ -67,7 +67,7 @@ class InertialSurvey:
             self._pressure_pa.append(imu.pressure_pa)
 
     def findings(self, *, asks_rest: bool = True) -> Iterator[CheckFinding]:
-        """``asks_rest``: a person was asked to lay the unit down."""
+        """``asks_rest``: a person was requested to lay the unit down."""
         yield from self._findings(asks_rest=asks_rest)
 
     def _subject(self, code: str, words: str) -> str:

@@ -151,7 +151,7 @@ class Simulation:
         return self._body(np.maximum(each_s, 0.0))
 
     def batches(self, batch_s: float = 0.05) -> Iterator[SensorBatch]:
-        """The whole walk from its start, generated as it is asked for."""
+        """Yield the whole walk from its start, generated on demand."""
         rate_hz = self.scenario.rate_hz
         rows = max(1, round(rate_hz * batch_s))
         for block in self._blocks(max(1, round(_BLOCK_S * rate_hz / rows)) * rows):

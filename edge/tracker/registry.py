@@ -37,7 +37,7 @@ from shared.path_noise import PathNoise
 class NoTracker:
     """Tracker of a unit too weak to track: no rows.  Its tracking agent computes the positions.
 
-    Not in ``TRACKERS``, as it keeps none of their promises.
+    Not in ``TRACKERS``, as it does not fulfil the contract of their interface.
     """
 
     path_noise: PathNoise | None = None

@@ -12,7 +12,7 @@ from shared.mcap_log.byte_ranges import SegmentRanges
 from shared.mcap_log.segment_file import SegmentFile
 
 FetchRange = Callable[[int, int], bytes]  # bytes from an offset until before another one
-_AHEAD_BYTES = 1 << 20  # behind what is asked for: the next chunks are asked for next
+_AHEAD_BYTES = 1 << 20  # read ahead, for the next chunks
 _KEPT_BYTES = 64 << 20
 _PREFETCHED_BYTES = 32 << 20  # at once; the rest is fetched when it is read
 

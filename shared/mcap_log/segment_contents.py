@@ -48,7 +48,7 @@ class Contents:
 
 
 def contents_of(file: SegmentFile) -> Contents:
-    """Whatever the bytes may be; what makes no sense is noted as damage of the file."""
+    """Return the content of any bytes; invalid parts are noted as damage of the file."""
     return _from_summary(file) or _from_walk(file)
 
 

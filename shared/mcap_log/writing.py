@@ -45,7 +45,7 @@ class SegmentPolicy:
     # Each topic of each chunk has an entry in the segment's index, which is kept in memory
     # until the segment ends: many units make shorter segments.
     index_entries_max: int = 200_000
-    waiting_bytes_max: int = 64 * 1024 * 1024  # kept in memory while the disk takes nothing
+    waiting_bytes_max: int = 64 * 1024 * 1024  # kept in memory while the disk cannot be written
 
 
 class SegmentState(Enum):

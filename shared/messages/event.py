@@ -13,7 +13,7 @@ from shared.messages.muster.v1 import event_pb2
 from shared.messages.quantise import signed32, unsigned_known
 from shared.messages.text_code import get_text_code, put_text_code
 
-FAILED = "failed"  # the detail of a stop that nobody wanted
+FAILED = "failed"  # the detail of a stop by an error
 
 
 class EventKind(IntEnum):

@@ -56,7 +56,7 @@ class NewCheckIn(Form):
 
 
 class UndoCheckIn(Form):
-    unit_id: UnitIdOrNone = ""  # empty: all members whom the check-in confirmed
+    unit_id: UnitIdOrNone = ""  # empty: all members that the check-in confirmed
 
 
 class Times(Form):

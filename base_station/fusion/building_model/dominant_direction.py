@@ -25,7 +25,7 @@ from base_station.fusion.building_model.straight_segments import (
     wrap_quarter,
 )
 
-WINDOW = 16  # of the last legs, one after each turn, that are asked for an axis
+WINDOW = 16  # last legs, one after each turn, from which an axis is estimated
 ABOUT_RAD = math.radians(8.0)  # further legs of an axis add nothing to its direction
 WIDE_RAD = math.radians(10.0)  # a direction less known than this may be any by a single leg
 SETTLED_RAD = math.radians(5.0)  # and is known again by several

@@ -33,7 +33,7 @@ class SavedCompassAided(SavedHorizontal, frozen=True):
 
 
 class CompassAidedFilter(HorizontalFilter):
-    """A ``HorizontalFilter`` that goes by a compass where nothing better is known."""
+    """``HorizontalFilter`` that uses a compass while the heading is not known better."""
 
     def __init__(self, scale_std: float, linear_rad: float, wander_radps: float) -> None:
         super().__init__(scale_std, linear_rad, wander_radps)

@@ -36,7 +36,7 @@ MIN_EFFECTIVE_PART = 0.1  # of the particles, that agree with a posterior: else 
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
 CONTRADICTION_GAIN = 1.0 / 30.0  # of that mean, a move
 DOUBTFUL_LOG_LIKELIHOOD = -8.0  # of the walls met of late: below, another place may be likelier
-RELOCALISE_EVERY_M = 5.0  # walked until that is asked again
+RELOCALISE_EVERY_M = 5.0  # walked between two attempts
 MIN_LOG_ODDS, MAX_LOG_ODDS = -3.0, 30.0  # logarithms; less is let be
 SPLIT_STD_M = 1.5  # standard deviation of a place below which one is left
 

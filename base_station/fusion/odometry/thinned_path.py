@@ -20,7 +20,7 @@ from shared.messages import Position
 STEP_M = 1.0
 CLIMB_M = 0.5
 STEP_NS = 10 * NS_PER_S
-STRIDE_NS = NS_PER_S  # a foot goes by fits and starts: shorter ones are no bends
+STRIDE_NS = NS_PER_S  # a foot's speed changes within a stride: shorter bends are none of the path
 MOVING_M = 0.05  # between two positions: the wearer moved
 FILLED_NS = 30 * NS_PER_S  # a journal is being read: packed rows cannot be filled
 MOST_LOOSE = 32 * CHUNK

@@ -21,7 +21,7 @@ from base_station.fusion.smoothing.interface import (
 from base_station.fusion.smoothing.landmarks import Landmark
 
 ENCOUNTER_TAIL = 3.0  # standard deviations from which a meeting counts less
-REJECTION_ROUNDS = 3  # rounds in which meetings that do not fit are let go
+REJECTION_ROUNDS = 3  # rounds in which meetings that do not fit are rejected
 
 
 class Encounters:

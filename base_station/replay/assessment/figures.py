@@ -35,7 +35,7 @@ def stated_m(samples: Sequence[TrackSample]) -> Floats:
 
 
 def stated_figures(stds_m: Floats) -> Figures | None:
-    """As the standard deviations (n, 3) promise them; None where there is nothing."""
+    """Return the figures that the standard deviations (n, 3) state; None without any."""
     if not len(stds_m):
         return None
     stds = stds_m[:: max(1, len(stds_m) // MOST_PLACES)]
@@ -77,7 +77,7 @@ def errors_against(live: Sequence[TrackSample], truth: Sequence[TrackSample]) ->
 
 
 def floor_probability(samples: Sequence[TrackSample], storey_m: float) -> float | None:
-    """That the floor shown is the right one, as the stated heights promise it."""
+    """Probability that the shown floor is right, by the stated standard deviations of height."""
     if not samples:
         return None
     std = np.maximum([one.std_down_m for one in samples], 1e-3)

@@ -60,9 +60,9 @@ class UnitReport(Answer, frozen=True):
     unit_id: str
     seconds: float
     walked_m: float
-    stated: Figures | None  # as the standard deviations promised
+    stated: Figures | None  # by the stated standard deviations
     against_smoothed: Figures | None  # shown positions compared with the smoothed trail
-    floor_probability: float | None  # as the stated heights promise it
+    floor_probability: float | None  # by the stated standard deviations of height
     floor_right: float | None  # fraction of the time, by later knowledge
     trust: TrustReport
     pin_residuals: tuple[PinResidual, ...]

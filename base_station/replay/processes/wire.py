@@ -143,7 +143,7 @@ class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
 
 
 class People(msgspec.Struct, frozen=True, tag="people"):
-    """People for whom the person ids of the log stand."""
+    """People by the person ids of the log."""
 
     known: dict[str, KnownPerson]
 

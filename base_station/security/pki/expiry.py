@@ -21,7 +21,9 @@ _THIS_STATION = Term("this_station", "this station")
 
 
 class ExpiryWatch:
-    """Reads the registry once a minute at most: it is asked once a second."""
+    """Watch of expiry dates; it is called once a second, and reads the registry once a minute at
+    most.
+    """
 
     def __init__(self, pki: PkiFolder, clock: Clock) -> None:
         self._pki = pki

@@ -35,7 +35,9 @@ class ConnectionAdmission:
         return ConnectionAdmission(identity, {entry.common_name: entry.holder for entry in entries})
 
     def max_links(self, common_name: str) -> int:
-        """0: of whom the authority has not enrolled, or has revoked."""
+        """Return the number of links that a participant may have; 0: it is not enrolled, or
+        revoked.
+        """
         holder = self.holders.get(common_name)
         return 0 if holder is None else _MAX_LINKS[holder]
 

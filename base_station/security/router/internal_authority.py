@@ -26,7 +26,9 @@ _ROUTER = "router"
 
 
 class InternalAuthority:
-    """Signs for the router and for those whom the acceptor lets in; for one thread at a time."""
+    """Authority that signs for the router and for participants that the acceptor admits; for one
+    thread at a time.
+    """
 
     def __init__(self) -> None:
         self._key = ec.generate_private_key(ec.SECP256R1())

@@ -48,7 +48,7 @@ class PendingConnections:
 
 class RoundRobin:
     """One expensive step a pass of the loop, so that links are served in between; networks take
-    turns, so that many handshakes from one do not hold up those from another.
+    turns, so that many handshakes from one do not delay those from another.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:

@@ -11,7 +11,7 @@ import msgspec
 from shared.coded_text import Term, coded
 
 _WINDOW_S = 60
-_MIN_REPORTED = 120  # in that time: as two units that try in vain once a second
+_MIN_REPORTED = 120  # in that time: as of two units that are refused once a second
 _MAX_NETWORKS = 4096  # that are counted apart in a second; further ones are counted together
 _OTHER_NETWORKS = "other addresses"
 

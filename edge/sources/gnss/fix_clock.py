@@ -5,9 +5,9 @@ later, by a line that may hold it for longer.  No fix arrives before its instant
 least delay of the last half minute gives the offset of the two clocks, and every other is placed by
 its own UTC.  The delay of that one is stated (``latency_s``).
 
-Only the time of day is used, so a receiver without a date, or one that is 1024 weeks off, serves
-as well.  UTC that jumps (a leap second learnt late, a receiver started anew) is believed when it
-has stayed for three seconds; a line that held everything back looks the same for less than that.
+Only the time of day is used, so a receiver without a date, or one that is 1024 weeks off, serves as
+well.  UTC that jumps (a leap second learnt late, a receiver started anew) is used when it has
+lasted for three seconds: shorter jumps may be a delay of the line.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ from shared.coded_text import coded
 
 _WAKE_S = 0.05  # between two reads of a buffer
 _HELD_S = 2.0  # in the buffer between two reads: a machine that is busy loses nothing
-_WAIT_S = 0.2  # after which a buffer is asked all the same: it may be gone
+_WAIT_S = 0.2  # after which a buffer is read without a signal, to detect that it is gone
 _CHUNK = 1 << 16
 _DEGC = 1e-3  # of the unit of temperatures
 

@@ -15,7 +15,7 @@ from shared.coded_text import coded
 
 USUAL_RATE_HZ = 400.0
 _OVERSAMPLING = 2.0  # of a device that is read at times of ours: no value is read twice
-_RATE_TOLERANCE = 0.01  # of a rate that was asked for: drivers write some digits
+_RATE_TOLERANCE = 0.01  # of a requested rate: drivers round it
 _RANGES = {ACCEL: 16 * 9.80665, GYRO: math.radians(2000.0)}  # steps go beyond smaller ones
 _RANGE_TOLERANCE = 0.03  # nominal ranges are rounded
 
@@ -27,7 +27,7 @@ class CapturePlan:
     writes: tuple[tuple[Path, str], ...]
     rate_hz: float
     full_scales: dict[str, float]  # of a kind of channel, where it is known
-    remark: str = ""  # for a person, where it is not as was asked for
+    remark: str = ""  # for a person, where it differs from the request
 
     def carry_out(self) -> None:
         """Raises OSError."""

@@ -2,7 +2,7 @@
 
 A driver stamps a sample as it is taken, by a clock that can be chosen since Linux 4.8: the
 monotonic one.  Where it cannot be chosen, stamps are laid onto the monotonic clock by when they
-come.  A stamp that cannot be is not believed, and its sample has no place.
+come.  A sample with an impossible time stamp is dropped.
 """
 
 from __future__ import annotations

@@ -130,7 +130,7 @@ class IioSource:
         return tuple(sensor for sensor in (self._mag, self._barometer) if sensor is not None)
 
     def _describe(self) -> SensorDescription:
-        """Describe the devices that are there now; of others, only what was asked for is known."""
+        """Describe the present devices; others are described by the settings alone."""
         rate_hz = self._settings.rate_hz or USUAL_RATE_HZ
         full_scales: dict[str, float] = {}
         has_mag = self._settings.mag is not None

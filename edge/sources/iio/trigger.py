@@ -22,7 +22,7 @@ class Trigger:
 
     @property
     def is_timer(self) -> bool:
-        """True for one that knows nothing of when the device has measured."""
+        """True for a timer, which is not synchronous with the device's measurements."""
         return self.folder is not None and (self.folder / _FREQUENCY).exists()
 
     def attach(self, device: Path, rate_hz: float) -> None:

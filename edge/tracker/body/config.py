@@ -41,7 +41,7 @@ class BodyConfig(NamedTuple):
     # Step length: an inverted pendulum, see step_length.
     trunk_scale_m: float = 0.91
     hand_scale_m: float = 0.70
-    leg_m: float = 0.9  # hip joint to sole, of a person of whom nothing is known
+    leg_m: float = 0.9  # hip joint to sole, where the person's is unknown
     thigh_above_radps: float = 1.0  # turn about level axes while walking; trunks and hands: 0.7
     thigh_below_radps: float = 0.8
     pivot_radps: float = 1.2  # a turn as fast halves the way of its steps
@@ -52,7 +52,7 @@ class BodyConfig(NamedTuple):
     least_motion: float = 0.12  # in phase, by the vertical motion, that has a direction
     recognised_steps: float = 4.0
     place: int = UNKNOWN_PLACE
-    scale_std: float = 0.08  # of a person of whom nothing is known
+    scale_std: float = 0.08  # of an uncalibrated person
     step_std: float = 0.35  # of a single step, by its length
     usual: UsualSteps = UsualSteps()  # beyond them a step is doubted; see step_doubt
     usual_step_m: float = 0.65  # of adults who walk indoors; see path_noise

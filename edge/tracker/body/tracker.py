@@ -111,7 +111,7 @@ class BodyTracker:
 
 
 def _place_of(description: SensorDescription) -> int:
-    """Place by the description; motion tells the upper body from a leg, and no more."""
+    """Return the place by the description; by motion only upper body and leg are distinguished."""
     if description.place == UPPER_BODY:
         return UNKNOWN_PLACE
     return _PLACES.get(PLACES.get(description.place, ""), UNKNOWN_PLACE)

@@ -1,4 +1,4 @@
-"""Movement of the torso at one sample: it stands, goes on in a stride, or goes by its steps."""
+"""Movement of the torso at one sample: at rest, within a stride, or dead reckoning by steps."""
 
 from __future__ import annotations
 
