@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import barriers, close, command, press
 from tests.e2e.layout_checks import flaws
@@ -14,6 +16,8 @@ from tests.e2e.stage import Stage
 
 SIZES = ((1920, 1080), (1366, 768), (1024, 768), (390, 844))
 LEAST_LINES = 60  # on a screen of 1920 by 1080
+LEAST_WORDS_PX = 60  # of the alarm or the place in a line
+BEYOND_PX = "one => one.scrollWidth - one.clientWidth"
 
 
 def headcount(page: Page) -> Locator:
@@ -127,6 +131,23 @@ def test_lines_fit_every_screen(stage: Stage) -> None:
         assert flaws(page) == [], (width, height)
     cards(page).nth(8).click()
     expect(page.locator(".card.chosen")).to_contain_text("Position")
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "de-DE", "fr-FR"])
+@pytest.mark.parametrize("scene", [scenes.par_requested, scenes.overdue])
+def test_line_has_name_and_words_beside_a_par_that_is_due(
+    stage: Stage, scene: Callable[[], Snapshot], locale: str
+) -> None:
+    page, _ = stage.open(scene(), locale=locale, kept={"muster-list-density": "lines"})
+    page.set_viewport_size({"width": 1280, "height": 800})
+    line = page.locator(".card.line", has_text=scenes.NAMES[0])
+    mark = line.locator(".par-mark")
+    expect(mark).to_have_text(re.compile(r"^PAR \+?\d+:\d+"))
+    assert mark.evaluate(BEYOND_PX) <= 0
+    assert line.locator(".name").evaluate(BEYOND_PX) <= 0
+    words = line.locator(".line-words")
+    assert words.evaluate("one => one.clientWidth") >= LEAST_WORDS_PX
+    assert line.locator(".card-head").evaluate(BEYOND_PX) <= 0
 
 
 def test_press_anywhere_on_a_card_chooses_it_except_on_buttons(stage: Stage) -> None:

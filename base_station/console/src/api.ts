@@ -249,12 +249,14 @@ export const removeBeacon = (beaconId: string) =>
 export const trails = (incidentId: string, kind: string) =>
   call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
 
-/** Of a span of at most a day. */
-export const timeline = (unitId: string, fromMs: number, untilMs: number, buckets: number) =>
-  call<answers.TimelineAnswer>(
+/** Of a span of at most a day; the station's time, as the console has it, is no whole number of milliseconds. */
+export const timeline = (unitId: string, fromMs: number, untilMs: number, buckets: number) => {
+  const [from, until] = [Math.round(fromMs), Math.round(untilMs)];
+  return call<answers.TimelineAnswer>(
     "GET",
-    `/units/${id(unitId)}/timeline?from_ms=${fromMs}&until_ms=${untilMs}&buckets=${buckets}`,
+    `/units/${id(unitId)}/timeline?from_ms=${from}&until_ms=${until}&buckets=${buckets}`,
   );
+};
 
 /** Values about the time of an alarm, and the threshold that one of them crossed. */
 export const alarmExplanation = (alarmId: string) =>

@@ -20,7 +20,7 @@ export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
       <Icon name={unit.alarms.length > 0 ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
       <span class="name">{name}</span>
       <span class="line-words">{words}</span>
-      <ParMark unit={unit} picture={picture} />
+      <ParMark unit={unit} picture={picture} isShort />
     </button>
   );
 }

@@ -48,17 +48,20 @@ interface MarkProps {
   unit: UnitView;
   picture: Picture;
   brief?: boolean; // beside the words about the confirmation
+  isShort?: boolean; // the time alone, where a name and an alarm need the room; its words are in the title
 }
 
 /** On a card: how long until this member's PAR is due, and whether any was confirmed. */
-export function ParMark({ unit, picture, brief = false }: MarkProps) {
+export function ParMark({ unit, picture, brief = false, isShort = false }: MarkProps) {
   const { duty } = unit;
   if (duty === null) return null;
   const { state, leftMs } = parOf(duty, picture.incident.value, picture.nowMsOf(unit.unit_id));
+  const words = markWords(state, duty.asked_ms !== null, leftMs);
+  const confirmation = t("par.state", { state: confirmationWords(duty) });
   return (
-    <span class={`par-mark ${state}`} title={t("par.state", { state: confirmationWords(duty) })}>
+    <span class={`par-mark ${state}`} title={isShort ? `${words}. ${confirmation}` : confirmation}>
       <Icon name={ICONS[state]} />
-      {markWords(state, duty.asked_ms !== null, leftMs)}
+      {isShort ? shortWords(state, leftMs) : words}
       {!brief && duty.confirmed === "not_yet" && <small>{t("par.unconfirmed")}</small>}
     </span>
   );
@@ -67,4 +70,10 @@ export function ParMark({ unit, picture, brief = false }: MarkProps) {
 function markWords(state: ParState, isRequested: boolean, leftMs: number): string {
   if (state === "overdue") return t("par.overdue", { time: countdown(-leftMs) });
   return t(isRequested ? "par.requested" : "par.countdown", { time: countdown(leftMs) });
+}
+
+function shortWords(state: ParState, leftMs: number): string {
+  return state === "overdue"
+    ? t("par.overdue_short", { time: countdown(-leftMs) })
+    : t("par.countdown", { time: countdown(leftMs) });
 }

@@ -60,6 +60,7 @@ export const par: Part<"par"> = {
   unconfirmed_count: "{count, number} noch nicht bestätigt",
   state: "PAR {state}",
   overdue: "PAR überfällig {time}",
+  overdue_short: "PAR +{time}",
   requested: "PAR angefordert, noch {time}",
   unconfirmed: "noch nicht bestätigt",
   title: "PAR-Stand (Vollzähligkeit)",

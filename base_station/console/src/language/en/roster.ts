@@ -57,6 +57,7 @@ export const par = {
   unconfirmed_count: "{count, number} not yet confirmed",
   state: "PAR {state}",
   overdue: "PAR overdue {time}",
+  overdue_short: "PAR +{time}",
   requested: "PAR requested, {time} left",
   unconfirmed: "not yet confirmed",
   title: "PAR status",

@@ -60,6 +60,7 @@ export const par: Part<"par"> = {
   unconfirmed_count: "{count, number} à confirmer",
   state: "PAR {state}",
   overdue: "PAR en retard de {time}",
+  overdue_short: "PAR +{time}",
   requested: "PAR demandé, reste {time}",
   unconfirmed: "pas encore confirmé",
   title: "État du PAR (effectifs)",
