@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from threading import Lock
 
@@ -123,11 +124,16 @@ class Checkpoints:
             old[-1].unlink(missing_ok=True)
 
 
+@cache  # of what this process has loaded, whatever an update writes meanwhile
 def _program() -> int:
-    """Over the text of everything that a state may come from."""
+    """Checksum over the text of everything that a state may come from."""
+    return _checksum_of(*(Path(one.__path__[0]) for one in (base_station, shared)))
+
+
+def _checksum_of(*packages: Path) -> int:
     total = 0
-    for package in (base_station, shared):
-        for path in _modules(Path(package.__path__[0])):
+    for package in packages:
+        for path in _modules(package):
             total = zlib.crc32(path.read_bytes(), total)
     return total
 

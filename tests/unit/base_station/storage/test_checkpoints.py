@@ -5,11 +5,16 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 from threading import Thread
-from types import SimpleNamespace
 
 import pytest
 
-from base_station.storage.checkpoints import KEPT_CLOSE, KEPT_FAR, SPARSE_NS, Checkpoints, _program
+from base_station.storage.checkpoints import (
+    KEPT_CLOSE,
+    KEPT_FAR,
+    SPARSE_NS,
+    Checkpoints,
+    _checksum_of,
+)
 from shared.clock import NS_PER_S
 from tests.rig.live_station import make_pipeline
 
@@ -88,27 +93,22 @@ def test_checkpoints_of_another_program_are_left(
     assert Checkpoints(tmp_path).latest() is None
 
 
-def test_any_changed_module_makes_another_program(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_any_changed_module_makes_another_program(tmp_path: Path) -> None:
     """Other files beside the modules, which may be changing just now, do not."""
-    package = SimpleNamespace(__path__=[str(tmp_path)])
-    monkeypatch.setattr("base_station.storage.checkpoints.base_station", package)
-    monkeypatch.setattr("base_station.storage.checkpoints.shared", package)
     programs = set()
     for name in ("a.py", "inside/deeper/b.py"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("x = 1\n", encoding="utf-8")
-        programs.add(_program())
+        programs.add(_checksum_of(tmp_path))
         path.write_text("x = 2\n", encoding="utf-8")
-        programs.add(_program())
+        programs.add(_checksum_of(tmp_path))
     assert len(programs) == 4
     for name in ("a.txt", "node_modules/c.py", "__pycache__/a.py"):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_text("x = 3\n", encoding="utf-8")
-        assert _program() in programs
+        assert _checksum_of(tmp_path) in programs
 
 
 def test_total_size_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
