@@ -39,6 +39,18 @@ def test_environment_without_pip_is_recreated(tmp_path: Path) -> None:
     assert "the step 'Building Muster and its console' failed" in ran.stderr  # there is no project
 
 
+def test_installed_libraries_are_compiled_and_files_of_another_python_left(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path], check=True)
+    [libraries] = tmp_path.glob("lib/python*/site-packages")
+    (libraries / "library.py").touch()
+    (libraries / "of_another_python.py").write_text("print 1\n")
+    compiling = [tmp_path / "bin" / "python", "-c", load_script().COMPILE_LIBRARIES]
+    ran = subprocess.run(compiling, capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+    [compiled] = (libraries / "__pycache__").iterdir()
+    assert compiled.name.startswith("library.")
+
+
 def test_quick_tests_use_two_workers_per_core_and_skip_slow_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
