@@ -279,7 +279,10 @@ def _folder_with_log(path: Path, scratch: Path) -> tuple[DataFolder, Mapping[Pat
     segments = [readable[file] for file in segments_of_one_log(in_time, left_out)]
     if not segments:
         names = ", ".join(file.name for file in files)
-        raise LogError(f"nothing in {names} can be read as a station's log: no MCAP file, or empty")
+        raise LogError(
+            f"nothing in {names} can be read as a station's log: no MCAP file, one of another "
+            "program, or empty"
+        )
     for one, following in pairwise(segments):
         if following.start_ns < one.end_ns:
             raise LogError(

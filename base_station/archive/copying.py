@@ -18,6 +18,7 @@ from base_station.archive.catalogue import (
     RADIO_NAME,
     VERSION,
     CatalogueEntry,
+    archived_ids,
     encoded_entry,
     name_in_archive,
     obsolete_files,
@@ -118,10 +119,12 @@ class ArchiveCopier:
         """Copy due incidents, the oldest first; each is in the catalogue when its result comes.
         An incident that was closed a minute ago waits: the log still has records of it to come.
 
+        A copy that is not in the archive any more is made again.
+
         Raises ArchiveError: finished copies are there, and the rest is due still.
         """
+        kept = list(self._note_lost_copies())
         due = self._copies.due(self._archive.address, closed_until_ns(self._clock))
-        kept = []
         for number, (incident, known_ns) in enumerate(due):
             try:
                 yield self._copy(incident, known_ns)
@@ -130,6 +133,31 @@ class ArchiveCopier:
             on_progress((number + 1) / len(due))
         if kept:
             raise ArchiveError(". ".join(kept))
+
+    def _note_lost_copies(self) -> Iterator[str]:
+        """Copies that were written and are not there any more are due again; gives a sentence for
+        each that cannot be made again.  Raises ArchiveError where not one is left: it may be
+        another disk, and notes of the copies on the right one must stay.
+        """
+        noted = self._copies.copied_to(self._archive.address)
+        there = set(archived_ids(self._archive)) if noted else set()
+        lost = [one for one in noted if one not in there]
+        if lost and not there:
+            raise ArchiveError(
+                f"the archive {self._archive.address} has none of the {len(lost)} incidents that "
+                "were copied to it: see that it is the right disk or bucket; to begin another "
+                "archive, give it another place"
+            )
+        records = Records(self._store, self._clock)
+        for incident_id in lost:
+            incident = records.incident(incident_id)
+            if incident is not None and self._has_log(incident):
+                self._copies.forget(incident_id)
+            else:
+                yield (
+                    f"the copy of {incident_id} is not in {self._archive.address} any more, and "
+                    "parts of its log are not here: bring either back"
+                )
 
     def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
         """``known_ns``: station time of the newest that is known of it."""

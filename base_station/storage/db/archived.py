@@ -65,6 +65,19 @@ class ArchivedCopies:
         with self._store.read() as session:
             return session.scalars(wanted.order_by(IncidentRow.opened_ns)).all()
 
+    def copied_to(self, archive: str) -> Sequence[str]:
+        """Return the ids of incidents of which a copy was written to the archive."""
+        wanted = select(ArchivedIncident.incident_id).where(ArchivedIncident.archive == archive)
+        with self._store.read() as session:
+            return session.scalars(wanted.order_by(ArchivedIncident.incident_id)).all()
+
+    def forget(self, incident_id: str) -> None:
+        """The copy is gone: the incident is due again."""
+        with self._store.write() as session:
+            session.execute(
+                delete(ArchivedIncident).where(ArchivedIncident.incident_id == incident_id)
+            )
+
     def note(
         self,
         incident_id: str,

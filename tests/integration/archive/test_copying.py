@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from shutil import rmtree
 
 import pytest
 from sqlalchemy import select
@@ -105,6 +106,42 @@ def test_complete_copy_is_not_replaced_after_loss_of_the_log(data: Path, tmp_pat
     assert {path: path.read_bytes() for path in before} == before
     with Store(data / "station.sqlite") as store:
         assert ArchivedCopies(store).files("i2"), "the others are copied all the same"
+
+
+def test_copy_that_is_not_there_any_more_is_made_again(data: Path, tmp_path: Path) -> None:
+    archive = tmp_path / "archive"
+    succeeded("archive", "copy", archive, "--data", data)
+    before = (archive / "i1" / "incident.mcap").read_bytes()
+    rmtree(archive / "i1")
+    succeeded("archive", "copy", archive, "--data", data)
+    assert (archive / "i1" / "incident.mcap").read_bytes() == before
+    assert "0 defects" in succeeded("archive", "verify", archive)
+
+    rmtree(archive / "i1")
+    with Store(data / "station.sqlite") as store:
+        note_segments(store, data / "log")
+    segment_paths(data / "log")[1].unlink()
+    refused = refusal("archive", "copy", archive, "--data", data)
+    assert "the copy of i1 is not in" in refused
+    assert "bring either back" in refused
+    with Store(data / "station.sqlite") as store:
+        assert ArchivedCopies(store).files("i1"), "it may come back"
+
+
+def test_archive_that_has_none_of_its_copies_is_taken_for_another_disk(
+    data: Path, tmp_path: Path
+) -> None:
+    archive = tmp_path / "archive"
+    succeeded("archive", "copy", archive, "--data", data)
+    archive.rename(tmp_path / "unmounted")
+    assert "no such folder" in refusal("archive", "copy", archive, "--data", data)
+    archive.mkdir()
+    refused = refusal("archive", "copy", archive, "--data", data)
+    assert "none of the 2 incidents" in refused
+    assert list(archive.iterdir()) == []
+    archive.rmdir()
+    (tmp_path / "unmounted").rename(archive)
+    succeeded("archive", "copy", archive, "--data", data)
 
 
 def test_unreachable_bucket_loses_nothing(
