@@ -29,7 +29,7 @@ logger = logging.getLogger(__name__)
 AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES are asked
 _TIMEOUT_S = 10.0
 _MOST_CAME = 8  # times the requested size; the rest of a longer reply is dropped
-_LEAST_KEPT_BYTES = 131_072  # of a reply, also to a small query
+_LEAST_KEPT_BYTES = 131_072  # of a reply, also of one to a small query
 
 _URGENT = "urgent"  # a query for alerts alone
 _FETCHING = ("range", _URGENT)  # queries for messages

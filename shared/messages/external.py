@@ -14,7 +14,7 @@ from shared.messages.muster.v1 import external_pb2
 class ExternalKind(IntEnum):
     UNKNOWN = 0
     PERSON = 1  # or vehicle: whatever moves
-    MARKER = 2  # a place that somebody marked
+    MARKER = 2  # a marked place
     EMERGENCY = 3
 
 

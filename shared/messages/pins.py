@@ -40,7 +40,7 @@ class StartTogether(msgspec.Struct, frozen=True):
 
 
 class SetMeeting(msgspec.Struct, frozen=True):
-    """Two people met; nobody says where."""
+    """Meeting of two people at an unknown place."""
 
     pin_id: str
     unit_id: str

@@ -7,7 +7,7 @@ import msgspec
 
 class AcknowledgeAlarm(msgspec.Struct, frozen=True):
     alarm_id: str
-    last_raised_ms: int = 0  # which raising somebody saw; 0: that is not said
+    last_raised_ms: int = 0  # of the raising that the user saw; 0: unknown
 
 
 class ResolveAlarm(msgspec.Struct, frozen=True):

@@ -51,7 +51,7 @@ class UndoConfirmation(msgspec.Struct, frozen=True):
     """Undoing what was entered by radio."""
 
     entry_id: str  # of the check-in, or of the command that was confirmed
-    unit_id: str = ""  # empty: of all whom that confirmed
+    unit_id: str = ""  # empty: of all members that it confirmed
 
 
 class SetAccountability(msgspec.Struct, frozen=True):

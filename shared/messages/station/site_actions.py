@@ -23,7 +23,7 @@ class SetPlan(msgspec.Struct, frozen=True):
 
 
 class SetStart(msgspec.Struct, frozen=True):
-    """A unit's own frame begins here, with this heading, as well as the commander knows."""
+    """Start of a unit's own frame: position and heading, as entered by a commander."""
 
     unit_id: str
     north_m: float
@@ -35,7 +35,7 @@ class SetStart(msgspec.Struct, frozen=True):
 
 
 class SetReference(msgspec.Struct, frozen=True):
-    """This unit's barometer stays where it is and tells the weather; no unit: nobody's does."""
+    """Reference barometer: a unit at rest that measures the weather's pressure; no unit: none."""
 
     unit_id: str
     down_m: float

@@ -6,7 +6,7 @@ import msgspec
 
 
 class RegisterUnit(msgspec.Struct, frozen=True):
-    """This unit belongs to us; messages of other units are kept but not believed."""
+    """Registration of a unit; messages of other units are kept but not used."""
 
     unit_id: str
     label: str
