@@ -33,7 +33,7 @@ export const department: Part<"department"> = {
   replay: "Wiedergabe öffnen",
   replay_login: "Benutzer {username}, Passwort {password}",
   map: "Karte der Stationen",
-  map_hint: "Norden ist oben. Ein Druck auf eine Station zeigt ihre Personen; Stationen ohne geodätischen Anker fehlen auf der Karte.",
+  map_hint: "Norden ist oben. Ein Druck auf eine Station zeigt ihre Personen; Stationen, deren Plan keine Lage hat, fehlen auf der Karte.",
   mark: "{station}: {state}, {alarms, plural, one {# offener Alarm} other {# offene Alarme}}",
   stations: "Stationen",
   no_stations: "Keine Station ist angemeldet: muster pki enroll NAME --department-station",

@@ -31,7 +31,7 @@ export const department = {
   replay: "Open the replay",
   replay_login: "User {username}, password {password}",
   map: "Map of the stations",
-  map_hint: "North is up. A press on a station shows its people; stations without a geodetic anchor are not on the map.",
+  map_hint: "North is up. A press on a station shows its people; stations whose plan has no location are not on the map.",
   mark: "{station}: {state}, {alarms, plural, one {# open alarm} other {# open alarms}}",
   stations: "Stations",
   no_stations: "No station is enrolled: muster pki enroll NAME --department-station",

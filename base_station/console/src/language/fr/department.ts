@@ -33,7 +33,7 @@ export const department: Part<"department"> = {
   replay: "Ouvrir la relecture",
   replay_login: "Utilisateur {username}, mot de passe {password}",
   map: "Carte des stations",
-  map_hint: "Le nord est en haut. Appuyer sur une station montre ses personnes ; les stations sans ancrage géodésique ne sont pas sur la carte.",
+  map_hint: "Le nord est en haut. Appuyer sur une station montre ses personnes\u00a0; les stations dont le plan n’est pas localisé ne sont pas sur la carte.",
   mark: "{station} : {state}, {alarms, plural, one {# alarme ouverte} other {# alarmes ouvertes}}",
   stations: "Stations",
   no_stations: "Aucune station n’est inscrite : muster pki enroll NAME --department-station",
