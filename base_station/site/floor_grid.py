@@ -14,6 +14,7 @@ from base_station.site.reachability import ReachableArea
 from base_station.site.wall_crossing import (
     BESIDE,
     FREE,
+    OUTSIDE,
     WALL,
     Costs,
     Ground,
@@ -26,6 +27,7 @@ Flags = NDArray[np.bool_]
 Index = NDArray[np.intp]
 
 CELL_M = 0.2
+GROUND_FLOOR = 0  # as plans count
 MARGIN_M = 3.0  # of open ground about the building
 SAMPLING_M = 0.12  # how far apart a step is looked at: a wall is a square thick
 MOST_CELLS = 4_000_000
@@ -61,8 +63,10 @@ class FloorGrid:
         )
         floors = {wall.floor for wall in plan.walls}
         self._walls = {floor: self._walls_of(plan, floor) for floor in sorted(floors)}
-        self._ground = {floor: _ground(walls) for floor, walls in self._walls.items()}
         self._within = np.logical_or.reduce([self._ring(ring) for ring in plan.outlines])
+        self._ground = {
+            floor: _ground(walls, self._within, floor) for floor, walls in self._walls.items()
+        }
         on_stairs = {stairs.floor for stairs in plan.stairs}
         self._stairs = {floor: self._stairs_of(plan, floor) for floor in sorted(on_stairs)}
 
@@ -81,15 +85,17 @@ class FloorGrid:
 
     def crossings(self, floor: int, from_m: Floats, to_m: Floats) -> Ground:
         """Highest class of ground on straight steps (n, 2) -> (n, 2), north and east, on the floor
-        (n,): ``FREE``, ``BESIDE`` a wall, or a ``WALL``.
+        (n,): ``FREE``, ``BESIDE`` a wall, a ``WALL`` that is entered, or ``OUTSIDE``.
         """
         ground = self._ground[floor]
         way_m = to_m - from_m
         looks = max(1, math.ceil(float(np.abs(way_m).max(initial=0.0)) / SAMPLING_M))
-        parts = np.arange(1, looks + 1)[:, None] / looks
+        parts = np.arange(looks + 1)[:, None] / looks
         north = self._rows(from_m[:, 0] + parts * way_m[:, 0])
         east = self._columns(from_m[:, 1] + parts * way_m[:, 1])
-        return np.asarray(ground[north, east].max(axis=0))
+        passed = ground[north, east]
+        stays = (passed[1:] == WALL) & (passed[:-1] == WALL)
+        return np.asarray(np.where(stays, BESIDE, passed[1:]).max(axis=0), np.uint8)
 
     def crossings_shifted(
         self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats
@@ -260,8 +266,14 @@ def _portions(counts: NDArray[np.intp]) -> Iterator[slice]:
             begin, total = end, 0
 
 
-def _ground(walls: Flags) -> Ground:
-    return np.where(walls, WALL, np.where(_dilated(walls), BESIDE, FREE)).astype(np.uint8)
+def _ground(walls: Flags, within: Flags, floor: int) -> Ground:
+    """Kinds of squares. Above the ground floor nobody walks out of the building; cellars may reach
+    beyond its outlines.
+    """
+    ground = np.where(walls, WALL, np.where(_dilated(walls), BESIDE, FREE)).astype(np.uint8)
+    if floor > GROUND_FLOOR:
+        ground[~within & ~walls] = OUTSIDE
+    return ground
 
 
 def _dilated(cells: Flags) -> Flags:

@@ -14,18 +14,44 @@ Floats = NDArray[np.float64]
 Ground = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
 
-FREE, BESIDE, WALL = 0, 1, 2  # kinds of squares; beside a wall there is no room for half a body
+# Kinds of squares: beside a wall there is no room for half a body, and outside of the outlines
+# above the ground floor there is air.
+FREE, BESIDE, WALL, OUTSIDE = 0, 1, 2, 3
+
+OFF_STAIRS, MET_BEFORE = 4, 5  # of the costs
 
 DIRECTIONS = 8  # into which is looked for room
 SAME_WALL = 6.0  # squares within which two walls are one
 MAX_WALLS = 12  # of a way that are remembered
 
-# Flags of a square, of a climb beside stairs, and of a wall where one was met before.
-Costs = tuple[float, float, float, float, float]
+# Of each kind of square, of a climb beside stairs, and of a wall where one was met before.
+Costs = tuple[float, float, float, float, float, float]
 
-_COSTS = UniTuple(float64, 5)  # type: ignore[no-untyped-call]
+_COSTS = UniTuple(float64, 6)  # type: ignore[no-untyped-call]
 _ROOM = UniTuple(float64, 2)  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
+
+
+@_compiled(uint8(uint8[:, ::1], float64, float64, float64, float64, float64))
+def crossing(
+    ground: Ground, row: float, column: float, rows: float, columns: float, sampling: float
+) -> int:
+    """Highest class of ground on a straight step from a place by so many rows and columns.
+
+    A wall is met where it is entered: who walks along it, or leaves it, does not cross it again.
+    """
+    last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
+    looks = max(1, math.ceil(max(abs(rows), abs(columns)) / sampling))
+    most, before = FREE, FREE
+    for step in range(looks + 1):
+        part = step / looks
+        at_row = min(max(math.floor(row + part * rows + 0.5), 0), last_row)
+        at_column = min(max(math.floor(column + part * columns + 0.5), 0), last_column)
+        here = ground[at_row, at_column]
+        if step > 0:
+            most = max(most, BESIDE if here == WALL and before == WALL else here)
+        before = here
+    return most
 
 
 @_compiled(
@@ -43,24 +69,12 @@ def crossings_shifted(
 ) -> None:
     """Highest class of ground on each straight step, shifted by each of its shifts; into ``worst``
     (n, g).  ``begins``, ``ways`` (n, 2) and ``moves`` (n, g, 2) are in squares, rows
-    and columns; a way is looked at ``sampling`` squares apart.
+    and columns; a way is looked at ``sampling`` squares apart (``crossing``).
     """
-    last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
     for one in range(len(begins)):
-        longest = max(abs(ways[one, 0]), abs(ways[one, 1]))
-        looks = max(1, math.ceil(longest / sampling))
         for move in range(moves.shape[1]):
-            row = begins[one, 0] + moves[one, move, 0] + 0.5
-            column = begins[one, 1] + moves[one, move, 1] + 0.5
-            most = 0
-            for step in range(1, looks + 1):
-                part = step / looks
-                at_row = min(max(math.floor(row + part * ways[one, 0]), 0), last_row)
-                at_column = min(max(math.floor(column + part * ways[one, 1]), 0), last_column)
-                most = max(most, ground[at_row, at_column])
-                if most == WALL:
-                    break
-            worst[one, move] = most
+            row, column = begins[one] + moves[one, move]
+            worst[one, move] = crossing(ground, row, column, ways[one, 0], ways[one, 1], sampling)
 
 
 @_compiled(float64(uint8[:, ::1], float64, float64, float64))
@@ -74,7 +88,7 @@ def free_fraction(ground: Ground, row: float, column: float, reach: float) -> fl
         for step in range(1, math.ceil(reach) + 1):
             at_row = min(max(math.floor(row + step * rows + 0.5), 0), last_row)
             at_column = min(max(math.floor(column + step * columns + 0.5), 0), last_column)
-            if ground[at_row, at_column] == WALL:
+            if ground[at_row, at_column] >= WALL:
                 break
         else:
             free += 1.0
@@ -115,7 +129,6 @@ def crossings_backward(
     squares of way the logarithm of the free part of directions within ``room[1]`` squares is added
     to the second column.
     """
-    last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
     walls = np.empty((MAX_WALLS, 2))
     for one in range(len(heads)):
         met = 0
@@ -127,23 +140,13 @@ def crossings_backward(
             rows, columns, moving_s, climbs = path[len(path) - 1 - back]
             way_row, way_column = cosine * rows - sine * columns, sine * rows + cosine * columns
             from_row, from_column = row - way_row, column - way_column
-            looks = max(1, math.ceil(max(abs(way_row), abs(way_column)) / sampling))
-            most = 0
-            for step in range(1, looks + 1):
-                part = step / looks
-                at_row = math.floor(from_row + part * way_row + 0.5)
-                at_column = math.floor(from_column + part * way_column + 0.5)
-                at_row = min(max(at_row, 0), last_row)
-                at_column = min(max(at_column, 0), last_column)
-                most = max(most, ground[at_row, at_column])
-                if most == WALL:
-                    break
+            most = crossing(ground, from_row, from_column, way_row, way_column, sampling)
             cost = costs[most]
             if most == WALL:
                 for last in range(met):
                     apart_rows, apart_columns = walls[last, 0] - row, walls[last, 1] - column
                     if max(abs(apart_rows), abs(apart_columns)) < SAME_WALL:
-                        cost = costs[4]
+                        cost = costs[MET_BEFORE]
                 if met < MAX_WALLS:
                     walls[met, 0], walls[met, 1] = row, column
                     met += 1
@@ -152,7 +155,7 @@ def crossings_backward(
                 at_row = min(max(math.floor(row + 0.5), 0), stairs.shape[0] - 1)
                 at_column = min(max(math.floor(column + 0.5), 0), stairs.shape[1] - 1)
                 if not stairs[at_row, at_column]:
-                    log += costs[3]
+                    log += costs[OFF_STAIRS]
             gone += math.hypot(rows, columns)
             if gone > room[0]:
                 gone = 0.0

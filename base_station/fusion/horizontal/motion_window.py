@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.horizontal.state import SCALE
-from base_station.fusion.wall_likelihood import BESIDE_WALL, OFF_STAIRS, THROUGH_WALL
+from base_station.fusion.wall_likelihood import BESIDE_WALL, IN_THE_AIR, OFF_STAIRS, THROUGH_WALL
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -19,7 +19,14 @@ Floats = NDArray[np.float64]
 KEPT_M = 30.0  # of path
 LEG_M = 3.0  # walked until the wearer might have turned
 REACH_M = 1.5  # and gone so far
-COSTS = 0.0, math.log(BESIDE_WALL), math.log(THROUGH_WALL), math.log(OFF_STAIRS)
+# By kind of square, and of a climb beside stairs.
+COSTS = (
+    0.0,
+    math.log(BESIDE_WALL),
+    math.log(THROUGH_WALL),
+    math.log(IN_THE_AIR),
+    math.log(OFF_STAIRS),
+)
 ANY_WALL, REPEATED_WALL = math.log(THROUGH_WALL), math.log(0.15)
 
 

@@ -24,12 +24,13 @@ from base_station.fusion.smoothing.equations import Equations
 from base_station.fusion.wall_likelihood import (
     BESIDE_WALL,
     CLIMBS,
+    IN_THE_AIR,
     OFF_STAIRS,
     THROUGH_WALL,
     UNSEEN_M,
 )
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.wall_crossing import BESIDE, WALL
+from base_station.site.wall_crossing import BESIDE, OUTSIDE, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -104,6 +105,7 @@ class WallSegments:
             middles = place_m[self.segment[on]]
             met = self.grid.crossings_shifted(floor, from_m[on], to_m[on], middles)
             logs += math.log(THROUGH_WALL) * self._steps_of(on, met == WALL)
+            logs += math.log(IN_THE_AIR) * self._steps_of(on, met == OUTSIDE)
             room += math.log(BESIDE_WALL) * self._steps_of(on, met == BESIDE)
             up = on[self.climbs[on]]
             if len(up) and self.grid.has_stairs(floor):

@@ -40,7 +40,8 @@ class BodyConfig(NamedTuple):
 
     # Step length: an inverted pendulum, see step_length.
     trunk_scale_m: float = 0.91
-    hand_scale_m: float = 0.70
+    hand_scale_m: float = 0.82
+    hand_swing_mps2: float = 2.1  # level motion of a hand; of as much, half the rise is the arm's
     leg_m: float = 0.9  # hip joint to sole, where the person's is unknown
     thigh_above_radps: float = 1.0  # turn about level axes while walking; trunks and hands: 0.7
     thigh_below_radps: float = 0.8

@@ -3,8 +3,9 @@
 On legs of length l a step of length L lifts the trunk by h = L^2 / (8 l).  A trunk that swings up
 and down with deviation s of its acceleration and the duration T of a step moves by h ~ s T^2, so
 L = c T sqrt(s); c has the leg in it and is fitted over people.  What a hand holds swings more up
-and down than the trunk, and has a constant of its own.  A thigh shows its speed
-(``thigh_swing``).
+and down than the trunk, and has a constant of its own; an arm that swings by itself throws it to
+and fro as well, and the more of that there is, the less of s is the trunk's.  A thigh shows its
+speed (``thigh_swing``).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def step_length(
 ) -> float:
     """Return the length of the step between two times, before the person's own scale."""
     count = 0
-    total = squares = last_rad = 0.0
+    total = squares = level_squares = last_rad = 0.0
     k = state.ticks - 1
     while k >= 0 and state.ticks - k < TICKS:
         tick = ticks[k & (TICKS - 1)]
@@ -37,11 +38,15 @@ def step_length(
             last_rad = tick.heading_rad if count == 1 else last_rad
             total += tick.up_mps2
             squares += tick.up_mps2**2
+            level_squares += tick.north_mps2**2 + tick.east_mps2**2
         k -= 1
     if count < 2:
         return 0.0
     deviation_mps2 = math.sqrt(max(squares / count - (total / count) ** 2, 0.0))
-    constant = config.hand_scale_m if state.in_hand else config.trunk_scale_m
+    constant = config.trunk_scale_m
+    if state.in_hand:
+        constant = config.hand_scale_m
+        deviation_mps2 /= 1.0 + level_squares / count / config.hand_swing_mps2**2
     length_m = constant * (to_s - from_s) * math.sqrt(deviation_mps2)
     if state.in_pocket:
         length_m = leg_speed(ticks, state, from_s, to_s, config) * (to_s - from_s)

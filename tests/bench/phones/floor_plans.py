@@ -3,7 +3,7 @@
 ``plan.geojson`` has the floor's shape first and then its shops, in longitude and latitude; the
 waypoints are in metres from the lower left corner of that shape (``floor.json``).  A shop's border
 is a wall, and so is the floor's.  Rest areas and parking spaces are drawn as shops are, and nothing
-stands about them.  Doors are not drawn.
+stands about them.  Doors are not drawn.  Floors are numbered from 1 at the ground, and -1 below.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from base_station.site.plan import Plan, read_plan
 
-FLOOR = 0  # the only one of each plan
 _OPEN_CATEGORIES = {
     "5d357bc00d3c1514c7107b6a",  # parking spaces
     "5d357a28ccd5d652c76d8793",  # rest areas
@@ -41,9 +40,11 @@ def floor_plan(folder: Path) -> Plan:
     corners = np.vstack([np.array(ring)[:, :2] for ring in _rings(shape)])
     low = corners.min(axis=0)
     scale = np.array([size.width_m, size.height_m]) / (corners.max(axis=0) - low)
-    features = [_feature(kind, shape, low, scale) for kind in ("outline", "wall")]
-    features += [_feature("wall", shop, low, scale) for shop in shops if not _is_open(shop)]
-    declared = {"frame": "site-m", "floors": [{"floor": FLOOR, "down_m": 0.0}]}
+    number = shape["properties"]["floor_num"]
+    floor = number - 1 if number > 0 else number
+    features = [_feature(kind, shape, floor, low, scale) for kind in ("outline", "wall")]
+    features += [_feature("wall", shop, floor, low, scale) for shop in shops if not _is_open(shop)]
+    declared = {"frame": "site-m", "floors": [{"floor": floor, "down_m": 0.0}]}
     document = {"type": "FeatureCollection", "muster": declared, "features": features}
     return read_plan(msgspec.json.encode(document))
 
@@ -53,14 +54,18 @@ def _is_open(shop: dict[str, Any]) -> bool:
 
 
 def _feature(
-    kind: str, drawn: dict[str, Any], low: NDArray[np.float64], scale: NDArray[np.float64]
+    kind: str,
+    drawn: dict[str, Any],
+    floor: int,
+    low: NDArray[np.float64],
+    scale: NDArray[np.float64],
 ) -> dict[str, Any]:
     lines: list[_Ring] = [
         ((np.array(ring)[:, :2] - low) * scale).tolist() for ring in _rings(drawn)
     ]
     return {
         "type": "Feature",
-        "properties": {"kind": kind, "floor": FLOOR},
+        "properties": {"kind": kind, "floor": floor},
         "geometry": {"type": "MultiLineString", "coordinates": lines},
     }
 

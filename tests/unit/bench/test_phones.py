@@ -10,7 +10,7 @@ import pytest
 
 from shared.errors import UserError
 from tests.bench.phones.command import WAYS, measure
-from tests.bench.phones.floor_plans import FLOOR, floor_plan
+from tests.bench.phones.floor_plans import floor_plan
 from tests.bench.phones.walks import LIVE, fuse_walk, publish_walk
 
 _RATE_HZ, _STEP_S, _STEP_M = 50.0, 0.5, 0.65
@@ -22,7 +22,10 @@ def _square(category: str, *corners_m: tuple[float, float]) -> dict[str, Any]:
     ring = [(_LOW + np.array(corner) / (100.0, 50.0) * _DEGREES).tolist() for corner in corners_m]
     return {
         "type": "Feature",
-        "properties": {"category": category if category == "floor" else [category]},
+        "properties": {
+            "category": category if category == "floor" else [category],
+            "floor_num": 2,
+        },
         "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
     }
 
@@ -67,7 +70,7 @@ def trial(floor):
 
 def test_a_floor_s_plan_has_the_walls_of_its_shops_and_none_about_parking_spaces(floor):
     plan = floor_plan(floor)
-    assert [storey.floor for storey in plan.storeys] == [FLOOR]
+    assert [storey.floor for storey in plan.storeys] == [1]  # the second from the ground
     assert len(plan.outlines) == 1
     assert len(plan.walls) == 2  # the floor's and the shop's
     np.testing.assert_allclose(plan.walls[1].line[0], (10.0, 30.0), atol=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import msgspec
@@ -11,7 +12,7 @@ import pytest
 from base_station.site.floor_grid import CELL_M, FloorGrid
 from base_station.site.plan import Ring, read_plan
 from base_station.site.reachability import MOST_SQUARES, ring_about
-from base_station.site.wall_crossing import BESIDE, FREE, WALL
+from base_station.site.wall_crossing import BESIDE, FREE, OUTSIDE, WALL
 
 
 def plan_of(*features: tuple[str, list[list[float]]]) -> bytes:
@@ -63,6 +64,28 @@ def test_step_through_a_wall_is_detected_and_one_through_the_door_is_not(grid: F
     from_m = np.array([[5.0, 9.5], [9.0, 9.5], [5.0, 5.0], [5.0, 9.0]])
     to_m = np.array([[5.0, 10.5], [9.0, 10.5], [6.0, 5.0], [6.0, 9.8]])
     assert grid.crossings(0, from_m, to_m).tolist() == [WALL, FREE, FREE, BESIDE]
+
+
+def test_wall_is_met_once_however_long_a_way_stays_in_it(grid: FloorGrid) -> None:
+    """In it, along it and out of it again; then out of the one side and in from the other."""
+    places_m = np.array([[5.0, 9.5], [5.0, 10.0], [6.0, 10.0], [6.0, 10.6], [6.0, 10.0]])
+    met = grid.crossings(0, places_m[:-1], places_m[1:])
+    moved = grid.crossings_shifted(0, places_m[:-1], places_m[1:], np.zeros((4, 1, 2)))
+    assert met.tolist() == moved[:, 0].tolist() == [WALL, BESIDE, BESIDE, WALL]
+
+
+@pytest.mark.parametrize(("floor", "kind"), [(-1, FREE), (0, FREE), (1, OUTSIDE)])
+def test_only_above_the_ground_floor_there_is_air_outside(floor: int, kind: int) -> None:
+    plan = json.loads(ROOMS)
+    for feature in plan["features"]:
+        feature["properties"]["floor"] = floor
+    plan["muster"]["floors"] = [{"floor": floor, "down_m": -3.0 * floor}]
+    found = FloorGrid.of(read_plan(json.dumps(plan).encode()))
+    assert found is not None
+    inside_m, outside_m = np.array([[5.0, 5.0]]), np.array([[5.0, 21.5]])
+    step_m = np.array([[0.3, 0.0]])
+    assert found.crossings(floor, outside_m, outside_m + step_m).tolist() == [kind]
+    assert found.crossings(floor, inside_m, inside_m + step_m).tolist() == [FREE]
 
 
 def test_way_leads_through_the_door(grid: FloorGrid) -> None:

@@ -55,7 +55,7 @@ def test_corridor_that_bends_teaches_the_scale(true_scale: float) -> None:
         cloud.predict((0.0, 0.5, 0.5, 0.0), NOISE, grid, 0)
     scale, std = scale_and_std(cloud)
     assert scale == pytest.approx(true_scale, abs=0.05)
-    assert std < 0.5 * SCALE_STD
+    assert std < 0.65 * SCALE_STD  # a crossing is a door that is not drawn, in one of fifty
 
 
 def test_way_without_a_bend_leaves_the_scale_open() -> None:
