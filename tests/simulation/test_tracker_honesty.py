@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.simulation.factory import find_scenario
 from edge.simulation.imu import GRAVITY_MPS2
 from edge.simulation.legs import Crawl, Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, Simulation
+from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.interface import Reason
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.honesty import (
     Honesty,
     ending,
@@ -75,6 +78,21 @@ def test_uncertainty_of_a_gap_is_not_reduced_by_a_good_landing():
     rows = track(made.description, cut, "eskf")
     assert np.sqrt(rows.position_cov_m2[1990, 0, 0]) < 0.3
     assert np.sqrt(rows.position_cov_m2[-1, 0, 0]) > 1.4  # 1.5 m/s for a second
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_doubt_of_a_turn_in_a_gap_does_not_shrink_by_walking_on(seed):
+    """Stances seem to show the heading: of 23 degrees the filter itself leaves 11."""
+    simulation = Simulation(find_scenario("j-shape"), seed, CONSUMER_SENSORS)
+    imu = inertial_samples(simulation)
+    since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+    cut = imu.part(slice(0, int(np.searchsorted(since_s, 8.0))))
+    rest = imu.part(slice(int(np.searchsorted(since_s, 8.4)), None))
+    tracker = EskfTracker(simulation.description)
+    rows = join_rows([tracker.push(cut), tracker.push(rest), tracker.finish()])
+    after = int(np.searchsorted(rows.t_ns, imu.t_ns[0] + 10_500_000_000))
+    assert rows.heading_std_rad[after] > 0.35
+    assert rows.heading_std_rad[-1] >= rows.heading_std_rad[after]
 
 
 def test_table_names_the_simulated_sensors():

@@ -27,6 +27,7 @@ from edge.tracker.foot.filter.bridge_scale import propagate_bridge, start_bridge
 from edge.tracker.foot.filter.correction_tracking import accept_heading, propagate_clone
 from edge.tracker.foot.filter.error_model import propagate
 from edge.tracker.foot.filter.gap_filling import inflate_for_gap, propagate_through_gap
+from edge.tracker.foot.filter.gap_turn import propagate_gap_turn
 from edge.tracker.foot.filter.initial_gyro_bias import inflate_bias, update_from_rest
 from edge.tracker.foot.filter.integration import integrate, mean_readings
 from edge.tracker.foot.filter.measurement_update import rotate_state
@@ -188,6 +189,7 @@ def _predict(
     rotate_state(state, propagate_scale_errors(state, dt_s, config))
     accumulate_heading_bias(state, dt_s, config)
     propagate_hidden_turn(state, dt_s)
+    propagate_gap_turn(state, dt_s)
     state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
     level_mps = math.sqrt(state.velocity_n_mps[0] ** 2 + state.velocity_n_mps[1] ** 2)

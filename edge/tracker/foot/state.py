@@ -203,6 +203,10 @@ FILTER = np.dtype(
         ("swing_hidden_rad2", np.float64),  # variance of the heading by this swing
         ("hidden_turn_rad", np.float64),  # by all so far
         ("hidden_way_n_m", np.float64, 2),  # by which that moves the position
+        # What gaps hide of the turn; see gap_turn.
+        ("gap_turn_rad2", np.float64),  # variance of the heading by all so far
+        ("gap_turn_is_new", np.bool_),  # no stance has followed the last one
+        ("gap_way_n_m", np.float64, 2),  # by which what is forgotten of it moves the position
         # The gyroscope's bias before a rest; see initial_gyro_bias.
         ("bias_observed", np.bool_),
         ("unobserved_bias_std_radps", np.float64),

@@ -30,6 +30,7 @@ from edge.tracker.foot.aiding.magnetic_field import (
 )
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.filter.error_model import heading_variance
+from edge.tracker.foot.filter.gap_turn import learn_gap_turn
 from edge.tracker.foot.filter.initial_gyro_bias import is_bias_unobserved
 from edge.tracker.foot.filter.measurement_update import begin_updates, end_updates, measure_heading
 from edge.tracker.foot.state import Aid, FilterState, Step
@@ -103,6 +104,7 @@ def _update(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfC
         begin_updates(state)
         measure_heading(step, state, residual_for_mean(mean, prior, noise), noise)
         end_updates(state)
+        learn_gap_turn(state)
         for j in range(len(hypotheses)):
             hypotheses[j].estimate[0] -= mean
     compass.heading_var_rad2 = heading_variance(state.covariance)

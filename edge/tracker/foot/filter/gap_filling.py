@@ -19,6 +19,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, POSITION, VELOCITY
+from edge.tracker.foot.filter.gap_turn import add_gap_turn
 from edge.tracker.foot.filter.integration import accel_scale, integrate
 from edge.tracker.foot.preprocessing.similar_strides import last_good, lost_periods
 from edge.tracker.foot.state import FilterState, Progress
@@ -87,6 +88,7 @@ def inflate_for_gap(
     """Add to the covariance what may have been missed in the gap before sample ``k``."""
     rates, forces = np.zeros((3, 3)), np.zeros((3, 3))
     _write_reading_covariances(ring, progress, k, dt_s, rates, forces, config)
+    held_rates, held_forces = _held_reading_variances(ring, k, rates, forces, config)
     noise_s2 = dt_s**3 / config.gap.similar_rate_s, dt_s**3 / config.gap.similar_force_s
     if progress.similar_count:
         turns, pushes = _similar_stride_variances(ring, progress, k, dt_s)
@@ -96,8 +98,12 @@ def inflate_for_gap(
     else:  # a line is no better than a like stride
         rates *= max(noise_s2[0], _line_error_s(dt_s, config.gap.rate_s) ** 2)
         forces *= max(noise_s2[1], _line_error_s(dt_s, config.gap.force_s) ** 2)
+    for i in range(3):
+        rates[i, i] += held_rates[i]
+        forces[i, i] += held_forces[i]
     rotation = state.rotation_nb
     rotated, pushed = rotation @ rates @ rotation.T, rotation @ forces @ rotation.T
+    add_gap_turn(state, rotated[2, 2])
     p = state.covariance
     for i in range(3):
         for j in range(3):
@@ -106,6 +112,52 @@ def inflate_for_gap(
             p[POSITION + i, VELOCITY + j] += pushed[i, j] * dt_s / 2.0
             p[VELOCITY + i, POSITION + j] += pushed[i, j] * dt_s / 2.0
             p[POSITION + i, POSITION + j] += pushed[i, j] * dt_s**2 / 3.0
+
+
+@njit()
+def _held_reading_variances(
+    ring: Ring, k: int, rates: Floats, forces: Floats, config: EskfConfig
+) -> tuple[Floats, Floats]:
+    """Return the variances of turn and push, sensor axes (3,) each, before a hang is known.
+
+    Until it has repeated itself for long enough, what it repeats is taken for motion.  ``rates``
+    and ``forces`` are the covariances of the readings.
+    """
+    held_rates, held_forces = np.zeros(3), np.zeros(3)
+    last = last_good(ring, k)
+    if last == k - 1:
+        return held_rates, held_forces  # samples are lost
+    period_s = ring[k & (len(ring) - 1)].period_s
+    for axis in range(3):
+        held_s = period_s * _repeats(ring, last, axis, False)
+        held_rates[axis] = rates[axis, axis] * _held_error_s(held_s, config.gap.rate_s) ** 2
+        held_s = period_s * _repeats(ring, last, axis, True)
+        held_forces[axis] = forces[axis, axis] * _held_error_s(held_s, config.gap.force_s) ** 2
+    return held_rates, held_forces
+
+
+@njit()
+def _repeats(ring: Ring, last: int, axis: int, forces: bool) -> int:
+    """Return how many samples up to ``last`` have the reading of the one before them."""
+    mask = len(ring) - 1
+    first = last
+    while first > 0 and last - first < span(ring):
+        here, before = ring[first & mask], ring[(first - 1) & mask]
+        if forces and here.accel_mps2[axis] != before.accel_mps2[axis]:
+            break
+        if not forces and here.gyro_radps[axis] != before.gyro_radps[axis]:
+            break
+        first -= 1
+    return last - first
+
+
+@njit()
+def _held_error_s(held_s: float, correlation_s: float) -> float:
+    """Return the error of a constant for a signal with correlation time ``correlation_s``.
+
+    Half of the slope times the time squared, and at most all of it.
+    """
+    return float(min(held_s**2 / (2.0 * correlation_s), held_s))
 
 
 @njit()

@@ -15,6 +15,7 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, POSITION, SIZE, VELOCITY
 from edge.tracker.foot.filter.alignment import level
 from edge.tracker.foot.filter.correction_tracking import decorrelate_clone
+from edge.tracker.foot.filter.gap_turn import add_gap_turn
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.mechanization.strapdown import rotate_attitude, rotation_matrix
 from edge.tracker.preprocessing.preprocess import SAMPLE_GAP
@@ -73,6 +74,7 @@ def reinitialise(
         _reset_error(state, ATTITUDE + i, tilt_std_rad**2)
     heading = ATTITUDE + 2
     state.covariance[heading, heading] += turn_std_rad**2
+    add_gap_turn(state, turn_std_rad**2)
 
 
 @njit()

@@ -19,6 +19,7 @@ from numba import njit
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, SIZE, TURN
 from edge.tracker.foot.filter.error_model import heading_variance
+from edge.tracker.foot.filter.gap_turn import forgotten_turn_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
 from edge.tracker.foot.filter.scale_misalignment import along
 from edge.tracker.foot.state import FilterState, Step
@@ -55,6 +56,7 @@ def stated_heading_variance(state: FilterState, inflation: float, config: EskfCo
     variance = heading_variance(p) + (inflation - 1.0) * p[yaw, yaw]
     variance += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
     variance += unobserved_heading_variance(state) + state.hidden_turn_rad**2
+    variance += forgotten_turn_variance(state)
     return float(max(variance, 0.0))
 
 
@@ -96,6 +98,7 @@ def report_covariance(
             )
             more_m2 += state.unobserved_effect[i] * state.unobserved_effect[j]
             more_m2 += state.hidden_way_n_m[i] * state.hidden_way_n_m[j]
+            more_m2 += state.gap_way_n_m[i] * state.gap_way_n_m[j]
             # Of a normal error the fourth moment is 3, the sixth 15 times the variance's power.
             more_m2 += 3.0 / 4.0 * state.second_order_n_m[i] * state.second_order_n_m[j]
             more_m2 += 15.0 / 36.0 * state.third_order_n_m[i] * state.third_order_n_m[j]

@@ -22,6 +22,7 @@ from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, GYRO_BIAS, POSITION, VELOCITY
+from edge.tracker.foot.filter.gap_turn import learn_gap_turn
 from edge.tracker.foot.state import FilterState, Step
 from edge.tracker.foot.zupt.zupt import lever_velocity_row
 from edge.tracker.mechanization.strapdown import dot
@@ -101,6 +102,8 @@ def on_lift_off(state: FilterState, config: EskfConfig) -> None:
     state.noise_m2 = noise_m2
     state.noise_rad2 = noise_rad2
     state.faulty_stride = False
+    if state.gap_turn_is_new:
+        learn_gap_turn(state)
 
 
 @njit()
