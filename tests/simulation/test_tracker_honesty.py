@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.samples import ImuBatch
 from edge.simulation.factory import find_scenario
 from edge.simulation.imu import GRAVITY_MPS2
 from edge.simulation.legs import Crawl, Stand, Walk
@@ -93,6 +94,25 @@ def test_doubt_of_a_turn_in_a_gap_does_not_shrink_by_walking_on(seed):
     after = int(np.searchsorted(rows.t_ns, imu.t_ns[0] + 10_500_000_000))
     assert rows.heading_std_rad[after] > 0.35
     assert rows.heading_std_rad[-1] >= rows.heading_std_rad[after]
+
+
+def test_hang_is_doubted_more_than_the_samples_that_are_left_out_for_it():
+    """Before it is known, 50 ms of what the gyroscope repeats are taken for motion."""
+    simulation = Simulation(find_scenario("j-shape"), 0, CONSUMER_SENSORS)
+    imu = inertial_samples(simulation)
+    since_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+    first, known, stop = np.searchsorted(since_s, [8.0, 8.05, 8.09])  # while the foot swings
+    hung_radps = imu.gyro_radps.copy()
+    hung_radps[first:stop] = hung_radps[first]
+    lost = np.ones(len(imu), np.bool_)
+    lost[known + 1 : stop] = False
+    hung = track(simulation.description, replace(imu, gyro_radps=hung_radps), "eskf")
+    left_out = track(
+        simulation.description,
+        ImuBatch(imu.t_ns[lost], imu.accel_mps2[lost], imu.gyro_radps[lost]),
+        "eskf",
+    )
+    assert hung.heading_std_rad[-1] > 1.1 * left_out.heading_std_rad[-1]
 
 
 def test_table_names_the_simulated_sensors():
