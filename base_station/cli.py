@@ -114,15 +114,9 @@ def replay(
     with gc_tuning.paused():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
-    with sigterm_as_ctrl_c(), progress_bar("reading the log") as on_progress:
+    with sigterm_as_ctrl_c():
         run_replay_station(
-            settings,
-            incident,
-            speed,
-            _announce,
-            on_progress,
-            recompute=recompute,
-            archive=archive,
+            settings, incident, speed, _announce, recompute=recompute, archive=archive
         )
 
 

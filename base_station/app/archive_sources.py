@@ -64,6 +64,7 @@ def open_archived_log(
     return OfflineLog(
         folder,
         store,
+        folder.database,
         keeps_result=False,
         scratch=scratch,
         log=log,

@@ -24,8 +24,10 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.projection import Projection
 from base_station.storage.segment_index import SegmentIndex
+from shared.channels import OPERATOR
 from shared.clock import NS_PER_S, Clock, SystemClock
-from shared.mcap_log import SegmentReader, own_segments
+from shared.mcap_log import SegmentInfo, SegmentReader, own_segments
+from shared.messages import STATION_ID
 
 _log = logging.getLogger(__name__)
 _OVERLAP_NS = 60 * NS_PER_S  # longer than the time of one projection
@@ -91,24 +93,45 @@ def project_whole_log(store: Database, log: Path, on_progress: Callable[[float],
     """Cut short, it leaves a database that knows no segment of the log."""
     records = Records(store, SystemClock())
     records.forget_projections()
-    segments = []
-    for path in own_segments(log)[0]:
-        with SegmentReader(path) as reader:
-            segments.append(reader.info())
+    segments = _segments(log)
     start_ns = min((one.start_ns for one in segments if one.messages), default=0)
     span_ns = max(max((one.end_ns for one in segments), default=0) - start_ns, 1)
+    count = project_log(
+        FolderFeed(log).records(),
+        past_pipeline(None),
+        _writer(store),
+        lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
+    )
+    SegmentIndex(records, {}).update(segments)
+    return count
 
+
+def project_actions(store: Database, log: Path) -> None:
+    """Project operators' actions alone: incidents, their units and people, without positions and
+    alarms.  Takes seconds at most, as no message of a unit is read.
+    """
+    actions = FolderFeed(log).records(keys={OPERATOR.key(STATION_ID)})
+    project_log(actions, past_pipeline(None), _writer(store), lambda _: None)
+
+
+def note_segments(store: Database, log: Path) -> None:
+    """Note the segments of a log as projected."""
+    SegmentIndex(Records(store, SystemClock()), {}).update(_segments(log))
+
+
+def _writer(store: Database) -> Callable[[Projection], None]:
     def write(projection: Projection) -> None:
         with store.write() as session:
             left_out = project_into(session, (projection,))
         if left_out:
             _log.warning("%d places of units are no numbers and are left out", left_out)
 
-    count = project_log(
-        FolderFeed(log).records(),
-        past_pipeline(None),
-        write,
-        lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
-    )
-    SegmentIndex(records, {}).update(segments)
-    return count
+    return write
+
+
+def _segments(log: Path) -> list[SegmentInfo]:
+    segments = []
+    for path in own_segments(log)[0]:
+        with SegmentReader(path) as reader:
+            segments.append(reader.info())
+    return segments

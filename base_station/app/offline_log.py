@@ -14,7 +14,7 @@ from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from base_station.app.factories import project_whole_log
+from base_station.app.factories import project_actions, project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.archive.archived_logs import ArchivedLogs
 from base_station.archive.partly_archived import opened_copy
@@ -63,6 +63,7 @@ class OfflineLog:
 
     folder: DataFolder
     store: Database
+    database: Path  # the file of ``store``; or beside it the note on the server that has it
     keeps_result: bool  # in the database; else results are gone with the command
     scratch: Path
     log: LogFeed
@@ -71,6 +72,7 @@ class OfflineLog:
     imports: ImportFolder  # files that were brought in
     radio: RadioLog
     log_of: Callable[[str], OpenedLog]  # by incident: its copy in an archive, or the folder's
+    lacks_tables: bool = False  # ``store`` has what operators did, and no positions and alarms
 
     def of_incident(self, incident_id: str) -> OfflineLog:
         """With the log that has this incident.
@@ -115,19 +117,21 @@ def open_offline_log(
     *,
     in_place: bool,
     decides_again: bool = True,
+    tables_later: bool = False,
 ) -> OfflineLog:
     """``in_place``: with the database that is there, where it can be written; else with a copy.
     ``decides_again``: it is looked whether this version decides otherwise than the station did.
 
-    A database that is missing, or older than the incident, is made of the log.  ``report`` receives
-    sentences about that and about unreadable parts, ``on_progress`` the fraction done.
+    A database that is missing, or older than the incident, is made of the log; with
+    ``tables_later`` the caller does that (``lacks_tables``).  ``report`` receives sentences about
+    that and about unreadable parts, ``on_progress`` the fraction done.
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
     folder, left_out = _folder_with_log(path, scratch)
     server = noted_server(folder.database)
     damage = "" if server is not None else damage_of(folder.database)
 
-    def opened(store: Database, *, keeps_result: bool) -> OfflineLog:
+    def opened(store: Database, database: Path, *, keeps_result: bool) -> OfflineLog:
         @cache
         def own_log() -> OpenedLog:
             return _open_log(
@@ -142,6 +146,7 @@ def open_offline_log(
         return OfflineLog(
             folder,
             store,
+            database,
             keeps_result=keeps_result,
             scratch=scratch,
             log=log,
@@ -157,15 +162,19 @@ def open_offline_log(
     elif server is not None or (in_place and _is_writable(folder)):
         there = _opened(folder, closing, report)
         if there is not None and not _lacks_incident(there, folder, incident_id):
-            return opened(there, keeps_result=True)
+            return opened(there, folder.database, keeps_result=True)
     copy = scratch / "station.sqlite"
     if not damage and server is None:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
-    offline_log = opened(store, keeps_result=False)
+    offline_log = opened(store, copy, keeps_result=False)
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
-        project_whole_log(store, folder.log, on_progress)
+        if tables_later:
+            project_actions(store, folder.log)
+            offline_log = replace(offline_log, lacks_tables=True)
+        else:
+            project_whole_log(store, folder.log, on_progress)
     if path.is_file() and (incident := read_incident_file(path)) is not None:
         Roster(store, SystemClock()).add_unknown_people(incident.people)
         _take_enclosed(path, incident.incident_id, folder)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 
@@ -19,6 +18,7 @@ from base_station.app.factories import (
 )
 from base_station.app.first_login import add_own_login
 from base_station.app.offline_log import OfflineLog, named_incident, open_offline_log
+from base_station.app.tables_from_log import TablesFromLog
 from base_station.archive.store import open_store
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
@@ -34,7 +34,7 @@ from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
-from base_station.storage.projection import FinishedTables
+from base_station.storage.projection import FinishedTables, ProjectedTables
 from shared.clock import SystemClock
 
 
@@ -43,7 +43,6 @@ def run_replay_station(
     incident_id: str,
     speed: float,
     announce: Announce,
-    on_progress: Callable[[float], None],
     *,
     recompute: bool = False,
     archive: str | None = None,
@@ -55,8 +54,8 @@ def run_replay_station(
 
     ``archive``: the incident is read there, and the folder is not asked.
     ``incident_id`` may be a file that has one incident.  A live station may be running on the
-    folder: the database is copied first.  ``on_progress`` receives the fraction of the log read,
-    where that must be.
+    folder: the database is copied first.  Where that does not have the incident, its tables are
+    made from the log while the replay runs.
     """
     clock = SystemClock()
     with ExitStack() as closing:
@@ -70,9 +69,10 @@ def run_replay_station(
                 incident_id,
                 closing,
                 announce,
-                on_progress,
+                _ignore,  # the whole log is not read here
                 in_place=False,
                 decides_again=recompute,
+                tables_later=True,
             )
         folder, store = offline_log.folder, offline_log.store
         roster, hub = Roster(store, clock), Hub()
@@ -82,7 +82,10 @@ def run_replay_station(
 
         past = offline_log.archive(recompute=recompute)
         replays = Replays(replay_starter(past, roster, clock, folder.recorded_until_ns))
-        services = _services(config, offline_log, past, roster, replays, hub)
+        tables: ProjectedTables = FinishedTables()
+        if offline_log.lacks_tables:
+            tables = closing.enter_context(TablesFromLog(offline_log, announce))
+        services = _services(config, offline_log, past, roster, replays, hub, tables)
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))
         )
@@ -97,6 +100,7 @@ def _services(
     roster: Roster,
     replays: Replays,
     hub: Hub,
+    tables: ProjectedTables,
 ) -> Services:
     """Services of a console that shows one closed incident."""
     clock, store = SystemClock(), offline_log.store
@@ -108,7 +112,7 @@ def _services(
         base_maps=BaseMaps(store),
         hub=hub,
         gate=ReadOnlyGate(),
-        projection=FinishedTables(),
+        projection=tables,
         replays=replays,
         erasures=None,
         clock=clock,

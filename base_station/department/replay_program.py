@@ -23,9 +23,7 @@ def main(incident_id: str, archive: str, listen: str, *tls: str) -> None:
     set_up_logging()
     Thread(target=_end_with_input, daemon=True).start()
     try:
-        run_replay_station(
-            StationConfig(http=http), incident_id, 1.0, _announce, lambda _: None, archive=archive
-        )
+        run_replay_station(StationConfig(http=http), incident_id, 1.0, _announce, archive=archive)
     except MusterError as error:
         _announce(str(error))
         sys.exit(2)

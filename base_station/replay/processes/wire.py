@@ -262,7 +262,7 @@ TimelineResult = TimelineFrame | Damage | Failure
 
 
 class FrameChannel:
-    """One end of a stream of messages; ``send`` and ``hang_up`` from any thread, one reads."""
+    """One end of a stream of messages; one thread reads, and any may call the rest."""
 
     def __init__(self, end: socket.socket) -> None:
         self._end = end
@@ -306,6 +306,11 @@ class FrameChannel:
         """Shut down: readers at both ends find that the other one is gone."""
         with suppress(OSError):  # it is
             self._end.shutdown(socket.SHUT_RDWR)
+
+    def stop_sending(self) -> None:
+        """Shut down one direction: the other process ends, and ``receive`` waits for that."""
+        with suppress(OSError):  # it has ended
+            self._end.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
         """By who reads."""

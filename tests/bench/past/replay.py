@@ -7,7 +7,7 @@ import statistics
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
+from base_station.app.offline_log import open_offline_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.log_feed import FolderFeed
 from base_station.engine.ports import Trails
@@ -33,8 +34,10 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
 from base_station.views.wire import Delta, Snapshot
 from shared.bench_figures import FiguresFile, write_figures
+from shared.channels import OPERATOR
 from shared.clock import SystemClock
 from shared.mcap_log import is_console, read_log, segment_paths
+from shared.messages import STATION_ID
 from tests.bench.past.command import walk_incident
 from tests.bench.past.live_positions import PositionAges, live_positions
 from tests.rig.latency import Latency, latency_of
@@ -92,6 +95,8 @@ class ReplayFigures:
     first_process_s: float  # until the first picture; the program is loaded first
     first_s: float  # with a program that is loaded
     no_checkpoints_s: float  # of a backup: the same
+    log_alone_s: float  # of the log's files without a database: opened, and the first picture
+    actions_s: float  # all that operators did, out of the whole log
     warm_s: float  # a seek, the middle one
     warm_worst_s: float
     cold_s: float  # with a log that is not in memory
@@ -163,6 +168,7 @@ def _figures(
             times_a_core = played_s / (_cpu_s(worker) - before_s)
             peak_mb = _peak_mb(worker)
         alone, meanwhile = _live_ages(folder, context, window, live_units, live_s)
+    log_alone_s, actions_s = _log_alone_s(folder, window), _actions_s(folder)
     again_first_s, again_s, again_times = _decided_again(folder, window)
     return ReplayFigures(
         units=units,
@@ -174,6 +180,8 @@ def _figures(
         first_process_s=first_process_s,
         first_s=first_s,
         no_checkpoints_s=no_checkpoints_s,
+        log_alone_s=log_alone_s,
+        actions_s=actions_s,
         warm_s=statistics.median(warm_s),
         warm_worst_s=max(warm_s),
         cold_s=max(cold_s),
@@ -206,6 +214,34 @@ def _first_picture_s(context: ReplayContext, window: ReplayWindow) -> float:
     began_s = time.perf_counter()
     with _replay(context, window):
         return time.perf_counter() - began_s
+
+
+def _log_alone_s(folder: DataFolder, window: ReplayWindow) -> float:
+    """Time to open the files of the log as ``muster base replay`` does, until the first picture."""
+    watcher, began_s = Watcher(), time.perf_counter()
+    with ExitStack() as closing:
+        offline_log = open_offline_log(
+            folder.log,
+            "i1",
+            closing,
+            lambda _: None,
+            lambda _: None,
+            in_place=False,
+            decides_again=False,
+            tables_later=True,
+        )
+        archive = offline_log.archive()
+        session = ReplaySession(archive, window, 1.0, watcher, person_lookup({}), SystemClock())
+        closing.callback(session.close)
+        watcher.wait_for(1)
+        return time.perf_counter() - began_s
+
+
+def _actions_s(folder: DataFolder) -> float:
+    """Time to read one topic, of a few records, out of the whole log."""
+    began_s = time.perf_counter()
+    assert list(read_log(folder.log, keys={OPERATOR.key(STATION_ID)}))
+    return time.perf_counter() - began_s
 
 
 def _seek_s(
@@ -320,6 +356,8 @@ def _table(figures: ReplayFigures) -> Table:
     table.add_row("first picture, program to be loaded", f"{figures.first_process_s:.2f} s")
     table.add_row("first picture", f"{figures.first_s:.2f} s", "1 s", again)
     table.add_row("first picture, no checkpoints", f"{figures.no_checkpoints_s:.2f} s", "1 s")
+    table.add_row("first picture, files of the log alone", f"{figures.log_alone_s:.2f} s", "2 s")
+    table.add_row("one topic of the whole log", f"{figures.actions_s:.2f} s", "0.2 s")
     seek = f"{figures.warm_s:.2f} s, worst {figures.warm_worst_s:.2f} s"
     table.add_row("seek", seek, "0.3 s", f"{figures.again_seek_s:.2f} s")
     table.add_row("seek, log not in memory", f"{figures.cold_s:.2f} s", "1 s")

@@ -190,4 +190,8 @@ export const refusal_past: Part<"refusal_past"> = {
   "import-no-timed-place": "kein Ort darin hat eine Zeit: Speichern Sie es neu als Spur mit Zeiten",
   "import-track-unplaced": "keine Spur darin hat eine Lage auf der Erde: Ihr Ort ist nicht verortet",
   "import-nothing-usable": "{damage}; {reason}",
+  "tables-being-made":
+    "Die Listen dieses Einsatzes werden gerade aus seinem Protokoll erstellt, denn es kam ohne Datenbank; die Wiedergabe läuft schon. Versuchen Sie es in einer Minute noch einmal.",
+  "tables-not-made":
+    "Die Listen dieses Einsatzes ließen sich nicht aus seinem Protokoll erstellen: {reason}",
 };

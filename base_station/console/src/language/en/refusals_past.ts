@@ -188,4 +188,8 @@ export const refusal_past = {
   "import-no-timed-place": "no place of it has a time: save it again as a track with times",
   "import-track-unplaced": "no track in it has a place on the Earth: its site has no location",
   "import-nothing-usable": "{damage}; {reason}",
+  "tables-being-made":
+    "The lists of this incident are being made from its log, as it came without a database; the replay runs meanwhile. Try again in a minute.",
+  "tables-not-made":
+    "The lists of this incident could not be made from its log: {reason}",
 };

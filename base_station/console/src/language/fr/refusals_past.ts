@@ -191,4 +191,8 @@ export const refusal_past: Part<"refusal_past"> = {
   "import-no-timed-place": "aucun lieu n’a d’heure\u00a0: enregistrez-le à nouveau comme trace avec les heures",
   "import-track-unplaced": "aucune trace n’a de lieu sur la Terre\u00a0: son site n’est pas localisé",
   "import-nothing-usable": "{damage}\u00a0; {reason}",
+  "tables-being-made":
+    "Les listes de cette intervention sont en cours de création à partir de son journal, arrivé sans base de données\u00a0; la relecture fonctionne déjà. Réessayez dans une minute.",
+  "tables-not-made":
+    "Les listes de cette intervention n’ont pas pu être créées à partir de son journal\u00a0: {reason}",
 };
