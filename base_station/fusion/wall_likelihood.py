@@ -5,7 +5,7 @@ smoother.
 from __future__ import annotations
 
 THROUGH_WALL = 0.02  # the remaining likelihood of a crossing: plans lack doors
-IN_THE_AIR = 0.02  # the same of a step outside of the building above the ground floor
+OFF_FLOOR = 0.02  # the same of a step outside of the building above the ground floor
 BESIDE_WALL = 0.5  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs

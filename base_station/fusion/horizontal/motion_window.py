@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.horizontal.state import SCALE
-from base_station.fusion.wall_likelihood import BESIDE_WALL, IN_THE_AIR, OFF_STAIRS, THROUGH_WALL
+from base_station.fusion.wall_likelihood import (
+    BESIDE_WALL,
+    OFF_FLOOR,
+    OFF_STAIRS,
+    THROUGH_WALL,
+)
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -24,7 +29,7 @@ COSTS = (
     0.0,
     math.log(BESIDE_WALL),
     math.log(THROUGH_WALL),
-    math.log(IN_THE_AIR),
+    math.log(OFF_FLOOR),
     math.log(OFF_STAIRS),
 )
 ANY_WALL, REPEATED_WALL = math.log(THROUGH_WALL), math.log(0.15)

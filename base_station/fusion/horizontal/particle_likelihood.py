@@ -12,7 +12,12 @@ from base_station.fusion.horizontal.heading_hypotheses import GnssObservation, s
 from base_station.fusion.horizontal.particles import Particles
 from base_station.fusion.horizontal.resampling import JITTER_M, mahalanobis2
 from base_station.fusion.horizontal.state import SCALE
-from base_station.fusion.wall_likelihood import BESIDE_WALL, IN_THE_AIR, OFF_STAIRS, THROUGH_WALL
+from base_station.fusion.wall_likelihood import (
+    BESIDE_WALL,
+    OFF_FLOOR,
+    OFF_STAIRS,
+    THROUGH_WALL,
+)
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, OUTSIDE, WALL
 
@@ -32,7 +37,7 @@ def wall_likelihood(
     """Likelihood of the walls met between the places (n, 2) before and now."""
     to_m = particles.states[:, :2]
     met = grid.crossings(floor, from_m, to_m)
-    crossed = math.log(THROUGH_WALL) * (met == WALL) + math.log(IN_THE_AIR) * (met == OUTSIDE)
+    crossed = math.log(THROUGH_WALL) * (met == WALL) + math.log(OFF_FLOOR) * (met == OUTSIDE)
     if climbs and grid.has_stairs(floor):
         crossed = crossed + math.log(OFF_STAIRS) * ~grid.on_stairs(floor, to_m)
     return WallLikelihood(crossed, crossed + math.log(BESIDE_WALL) * (met == BESIDE))

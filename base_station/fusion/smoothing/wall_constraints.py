@@ -24,7 +24,7 @@ from base_station.fusion.smoothing.equations import Equations
 from base_station.fusion.wall_likelihood import (
     BESIDE_WALL,
     CLIMBS,
-    IN_THE_AIR,
+    OFF_FLOOR,
     OFF_STAIRS,
     THROUGH_WALL,
     UNSEEN_M,
@@ -105,7 +105,7 @@ class WallSegments:
             middles = place_m[self.segment[on]]
             met = self.grid.crossings_shifted(floor, from_m[on], to_m[on], middles)
             logs += math.log(THROUGH_WALL) * self._steps_of(on, met == WALL)
-            logs += math.log(IN_THE_AIR) * self._steps_of(on, met == OUTSIDE)
+            logs += math.log(OFF_FLOOR) * self._steps_of(on, met == OUTSIDE)
             room += math.log(BESIDE_WALL) * self._steps_of(on, met == BESIDE)
             up = on[self.climbs[on]]
             if len(up) and self.grid.has_stairs(floor):
