@@ -39,8 +39,6 @@ _NOT_OF_THE_API = (
     "base_station/storage/request_files.py",
     # Answers to programs that post samples, dispatches or alerts.
     "base_station/api/posted_samples.py",
-    "base_station/api/routes/dispatch.py:post_alert",
-    "base_station/api/routes/dispatch.py:_require_type",
     "base_station/api/routes/samples.py:post_samples",
     "base_station/engine/sample_intake.py",
 )

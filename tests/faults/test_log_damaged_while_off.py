@@ -116,10 +116,10 @@ def test_truncated_emptied_or_exchanged_segments_are_reported(site: Site, tmp_pa
     gone.unlink()
     assert lost(site) > 10
     site.start()
-    problems = site.problems()
-    for path in (cut, zeroed, exchanged, gone):
-        assert path.name in problems
-    assert "is missing: what happened from 20" in problems
+    damaged = {path.name for path in (cut, zeroed, exchanged, gone)}
+    # The contents are read after the start, segment by segment.
+    until(lambda: all(name in site.problems() for name in damaged), "all four are reported")
+    assert "is missing: what happened from 20" in site.problems()
     until(site.has_all, "what is lost is fetched again", 90.0, 0.5)
     assert site.station.stop() == 0
     assert set(site.logged().values()) == {1}

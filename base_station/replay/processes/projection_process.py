@@ -6,6 +6,7 @@ from threading import Lock
 
 from base_station.replay.processes import wire
 from base_station.replay.processes.server import ReplayProcesses
+from shared.coded_text import coded
 from shared.errors import StoreError
 
 
@@ -52,4 +53,4 @@ def _wait_for(line: wire.FrameChannel) -> None:
                 raise failure.error()
             case wire.Damage():
                 pass  # the integrity check finds it, too
-    raise StoreError("the process that projects the log has ended")
+    raise StoreError(coded("projection-ended", "the process that projects the log has ended"))

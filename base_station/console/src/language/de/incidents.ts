@@ -20,7 +20,7 @@ export const incident: Part<"incident"> = {
   replay_of: "Wiedergabe: {incident}",
   accuracy: "Genauigkeit",
   rehearse: "Schwellen",
-  rehearse_of: "Andere Alarmschwellen: {incident}",
+  rehearse_of: "Schwellen ändern: {incident}",
   erase_warning: "Wer dort war und wo, wird gelöscht.",
   erase_warning_beside:
     "Wer dort war und wo, wird gelöscht. Von Einsätzen, die gleichzeitig liefen ({others}), bleibt alles; Funkaufnahmen aus dieser Zeit bleiben, bis auch diese gelöscht werden.",

@@ -194,4 +194,6 @@ export const refusal_past: Part<"refusal_past"> = {
     "Die Listen dieses Einsatzes werden gerade aus seinem Protokoll erstellt, denn es kam ohne Datenbank; die Wiedergabe läuft schon. Versuchen Sie es in einer Minute noch einmal.",
   "tables-not-made":
     "Die Listen dieses Einsatzes ließen sich nicht aus seinem Protokoll erstellen: {reason}",
+  "projection-ended":
+    "der Prozess, der die Tabellen aus dem Protokoll erstellt, ist beendet",
 };

@@ -192,4 +192,6 @@ export const refusal_past = {
     "The lists of this incident are being made from its log, as it came without a database; the replay runs meanwhile. Try again in a minute.",
   "tables-not-made":
     "The lists of this incident could not be made from its log: {reason}",
+  "projection-ended":
+    "the process that projects the log has ended",
 };

@@ -15,3 +15,4 @@ export * from "./refusals_plan";
 export * from "./refusals_station";
 export * from "./rehearsals";
 export * from "./transfer_problems";
+export * from "./unit_checks";

@@ -27,6 +27,5 @@ export * from "./roster";
 export * from "./setup";
 export * from "./station";
 export * from "./coded_reasons";
-export * from "./unit_checks";
 export * from "./unit_faults";
 export * from "./stations";

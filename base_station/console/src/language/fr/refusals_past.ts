@@ -195,4 +195,6 @@ export const refusal_past: Part<"refusal_past"> = {
     "Les listes de cette intervention sont en cours de création à partir de son journal, arrivé sans base de données\u00a0; la relecture fonctionne déjà. Réessayez dans une minute.",
   "tables-not-made":
     "Les listes de cette intervention n’ont pas pu être créées à partir de son journal\u00a0: {reason}",
+  "projection-ended":
+    "le processus qui crée les tables à partir du journal s’est terminé",
 };
