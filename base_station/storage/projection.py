@@ -61,6 +61,10 @@ class ProjectedTables(Protocol):
         """
         ...
 
+    def flush_actions_soon(self) -> Callable[[], bool]:
+        """As ``flush_soon``, for readers of nothing but operators' actions: incidents and units."""
+        ...
+
 
 class FinishedTables:
     """``ProjectedTables`` into which nothing more is projected."""
@@ -69,4 +73,7 @@ class FinishedTables:
         return True
 
     def flush_soon(self) -> Callable[[], bool]:
+        return self.flush
+
+    def flush_actions_soon(self) -> Callable[[], bool]:
         return self.flush

@@ -14,7 +14,7 @@ from pydantic import BaseModel, Field
 
 from base_station.api.alarm_lives import AlarmWithLife, with_life
 from base_station.api.authentication import Viewer
-from base_station.api.current_tables import CurrentStation
+from base_station.api.current_tables import CurrentStation, StationWithActions
 from base_station.api.forms import (
     AlarmIdText,
     DispatchNumberOrNone,
@@ -167,7 +167,7 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
 
 
 @router.get("/incidents/{incident_id}")
-def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
+def get_incident(incident_id: Id, station: StationWithActions, _: Viewer) -> IncidentAnswer:
     incident = incident_or_404(station, incident_id)
     archived_ns = station.archived.times_ns([incident_id]).get(incident_id)
     return _incident(incident, station, archived_ns)

@@ -162,6 +162,7 @@ describe("findings of a unit's check at its start", () => {
 
   test("are composed in the chosen language, and those of another version as they came", async () => {
     await show("de");
+    await loadDeferred();
     expect(preflightText({ ...FOUND, findings: [...FOUND.findings], finding_codes: [...FOUND.finding_codes] })).toBe(
       "mit Warnungen: Temperatur: das Gerät hat keinen Sensor; radio: weak",
     );

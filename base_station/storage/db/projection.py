@@ -137,6 +137,9 @@ class SqlProjection:
         with self._changed:
             return self._write_now(self._decided)
 
+    def flush_actions_soon(self) -> Callable[[], bool]:
+        return self.flush_soon()
+
     def _write_now(self, goal: int) -> Callable[[], bool]:
         """True if the projections up to ``goal`` are in the tables, or the store takes none."""
         # An attempt under way may have begun before this call: two are needed.

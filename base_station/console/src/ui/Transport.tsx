@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { steer, type Replay } from "../sessions";
 import * as api from "../api";
 import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
@@ -12,6 +13,7 @@ import { useLoaded } from "./useLoaded";
 
 const SPEEDS = [0.5, 1, 2, 4, 8, 16, 32, 64];
 const STEP_MS = 10_000;
+const ASK_AGAIN_MS = 5_000;
 
 interface Props {
   replay: Replay;
@@ -20,8 +22,8 @@ interface Props {
 
 /** Play, seek and speed; the alarms are marks on the way and places to go to. */
 export function Transport({ replay, state }: Props) {
-  const [loaded] = useLoaded(() => api.incidentAlarms(replay.incident.incident_id));
-  const alarms = eachRaising(loaded.value ?? []);
+  const loaded = usePastAlarms(replay.incident.incident_id);
+  const alarms = eachRaising(loaded ?? []);
   const { start_ms: start, end_ms: end, at_ms: at, playing } = state;
   const change = (what: api.ReplayChange) => steer(replay, what);
   const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });
@@ -44,10 +46,24 @@ export function Transport({ replay, state }: Props) {
       {!state.seeking && (
         <span>{t("transport.progress", { at: countdown(at - start), all: countdown(end - start) })}</span>
       )}
-      <GoTo alarms={alarms} sinceMs={start} seek={seek} />
+      <GoTo alarms={alarms} isKnown={loaded !== null} sinceMs={start} seek={seek} />
       <Speed state={state} choose={(speed) => change({ speed })} />
     </div>
   );
+}
+
+/** Alarms of the incident; null until the station has them, which of a log without a database takes minutes. */
+function usePastAlarms(incidentId: string): readonly api.PastAlarm[] | null {
+  const [loaded] = useLoaded(() => api.incidentAlarms(incidentId));
+  const isKnown = loaded.value !== null;
+  useEffect(() => {
+    if (isKnown) return;
+    const take = (answer: readonly api.PastAlarm[]) => (loaded.value = [...answer]);
+    const ask = () => void api.incidentAlarms(incidentId).then(take, () => undefined); // the reason was shown
+    const timer = setInterval(ask, ASK_AGAIN_MS);
+    return () => clearInterval(timer);
+  }, [isKnown]);
+  return loaded.value;
 }
 
 interface StepProps {
@@ -77,7 +93,8 @@ function keyOf({ alarm_id, raised_ms }: api.PastAlarm): string {
 }
 
 /** The alarms in words, to go to. */
-function GoTo({ alarms, sinceMs, seek }: SeekProps & { sinceMs: number }) {
+function GoTo({ alarms, isKnown, sinceMs, seek }: SeekProps & { isKnown: boolean; sinceMs: number }) {
+  const none = isKnown ? t("transport.no_alarms") : t("transport.alarms_unknown");
   const chosen = useChosen("", (raisedMs) => seek(Number(raisedMs) - LEAD_MS));
   return (
     <select
@@ -86,7 +103,7 @@ function GoTo({ alarms, sinceMs, seek }: SeekProps & { sinceMs: number }) {
       disabled={alarms.length === 0}
       {...chosen}
     >
-      <option value="">{alarms.length === 0 ? t("transport.no_alarms") : t("transport.alarms", { count: alarms.length })}</option>
+      <option value="">{alarms.length === 0 ? none : t("transport.alarms", { count: alarms.length })}</option>
       {alarms.map((alarm) => (
         <option key={keyOf(alarm)} value={alarm.raised_ms}>
           {timeSince(sinceMs, alarm.raised_ms)} {alarmText(alarm)}

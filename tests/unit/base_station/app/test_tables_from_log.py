@@ -63,6 +63,7 @@ def test_tables_are_refused_until_the_whole_log_is_in_them(folder: Path, tmp_pat
         tables = TablesFromLog(offline_log, announced.append)
         with pytest.raises(StoreError, match="being made from its log"):
             tables.flush_soon()
+        assert tables.flush_actions_soon()(), "the console shows which incident it replays"
         with tables:
             until(tables.flush, "the tables are complete")
             assert tables.flush_soon()()

@@ -26,6 +26,7 @@ export const transport: Part<"transport"> = {
   going: "Gehe zu {time} …",
   progress: "{at} von {all}",
   go_to: "Zu einem Alarm gehen",
+  alarms_unknown: "Alarme …",
   no_alarms: "Keine Alarme",
   alarms: "{count, plural, one {# Alarm …} other {# Alarme …}}",
   speed: "Geschwindigkeit",

@@ -25,6 +25,7 @@ export const transport = {
   going: "Going to {time} …",
   progress: "{at} of {all}",
   go_to: "Go to an alarm",
+  alarms_unknown: "Alarms …",
   no_alarms: "No alarms",
   alarms: "{count, plural, one {# alarm …} other {# alarms …}}",
   speed: "Speed",

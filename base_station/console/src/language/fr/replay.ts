@@ -27,6 +27,7 @@ export const transport: Part<"transport"> = {
   going: "Vers {time}…",
   progress: "{at} sur {all}",
   go_to: "Aller à une alarme",
+  alarms_unknown: "Alarmes …",
   no_alarms: "Aucune alarme",
   alarms: "{count, plural, one {# alarme…} other {# alarmes…}}",
   speed: "Vitesse",
