@@ -90,7 +90,7 @@ def test_the_dialog_fits_and_has_no_english_text(
     if (button := page.locator(".menu-button")).is_visible():
         button.click()
     page.locator("#menu button").first.click()
-    named = {"de": "Andere Alarmschwellen", "fr": "Autres seuils"}[language]
+    named = {"de": "Schwellen ändern", "fr": "Autres seuils"}[language]
     page.get_by_role("dialog").get_by_role("button", name=re.compile(named)).first.click()
     page.locator("input[name=alarm_s]").fill("20")
     page.locator(".rehearsal button").click()
