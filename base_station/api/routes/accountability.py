@@ -70,7 +70,7 @@ class Rest(Form):
 
 @router.get("/accountability")
 def list_on_duty(station: Station, _: Viewer, incident_id: Id | None = None) -> list[OnDuty]:
-    """The members with a PAR to be confirmed, the most urgent first; of one incident, or of all."""
+    """Members whose PAR is to be confirmed, the most urgent first; of one incident, or of all."""
     picture = station.picture()
     incidents = {one.incident_id: one for one in picture.incidents}
     found = [
@@ -84,14 +84,18 @@ def list_on_duty(station: Station, _: Viewer, incident_id: Id | None = None) -> 
 
 @router.get("/accountability/usual")
 def usual_times(station: Station, _: Viewer) -> Times:
-    """Times with which an incident is opened where the request gives no others."""
+    """Default PAR interval and work limit of an incident, used where a request to open one gives
+    none.
+    """
     usual = station.accountability
     return Times(par_interval_s=usual.par_interval_s, work_limit_s=usual.work_limit_s)
 
 
 @router.post("/check-ins", status_code=204)
 def check_in(new: NewCheckIn, station: Station, perform: Perform) -> None:
-    """PAR by radio.  It resolves the alarm that the PAR is overdue, and no other alarm."""
+    """Confirm a PAR that the member answered by radio.  This resolves the alarm that the PAR is
+    overdue, and no other alarm.
+    """
     unit_id = new.target.unit_id if isinstance(new.target, UnitTarget) else ""
     everyone = isinstance(new.target, EveryoneTarget)
     check_in_id = new.check_in_id or uuid.uuid4().hex
@@ -102,8 +106,8 @@ def check_in(new: NewCheckIn, station: Station, perform: Perform) -> None:
 
 @router.post("/check-ins/{check_in_id}/undo", status_code=204)
 def undo_check_in(check_in_id: Id, perform: Perform, undo: UndoCheckIn | None = None) -> None:
-    """Undo a check-in: the PAR is as if it had not been entered.  Answers of members on their own
-    units stay.
+    """Undo a PAR confirmation that was entered in error.  The PAR is then as if it had not been
+    entered; answers that members gave on their own units stay.
     """
     perform(UndoConfirmation(check_in_id, undo.unit_id if undo else ""))
 
@@ -116,7 +120,7 @@ def set_times(incident_id: Id, times: Times, station: Station, perform: Perform)
 
 @router.put("/units/{unit_id}/rest", status_code=204)
 def set_rest(unit_id: UnitId, rest: Rest, perform: Perform) -> None:
-    """The wearer goes to rest, or is ready for work again."""
+    """Send the wearer to rehab, or mark the wearer as ready for work again."""
     perform(SetRest(unit_id, rest.resting))
 
 

@@ -64,7 +64,7 @@ class AlarmExplanationAnswer(Answer, frozen=True):
 
 
 class Acknowledgement(Form):
-    """Acknowledgement of an alarm as it was shown: one that was raised anew since stays."""
+    """Acknowledgement of an alarm as it was shown; an alarm that was raised again since stays open."""
 
     last_raised_ms: Annotated[int, Field(gt=0, le=MAX_TIME_MS)]
 
@@ -78,7 +78,7 @@ class Resolution(Acknowledgement):
 def list_alarms(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AlarmWithLife]:
-    """Those raised in the window, newest first."""
+    """Alarms that were raised in the window, newest first."""
     alarms = station.records.alarms(when, limit)
     lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
     return [with_life(alarm, lives[alarm.alarm_id], station.roster) for alarm in alarms]
@@ -141,7 +141,7 @@ def explain_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> Alar
 def acknowledge(
     alarm_id: AlarmId, seen: Acknowledgement, station: Station, perform: Perform
 ) -> None:
-    """Refused (409) where it has been raised anew since it was seen; so is resolving it."""
+    """Acknowledge an alarm as it was shown.  409 if it was raised again since."""
     with _not_found_if_unknown(station, alarm_id):
         perform(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
 

@@ -40,7 +40,7 @@ class NewAssignment(Form):
 def list_assignments(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AssignmentAnswer]:
-    """Those that held at some time of the window, newest first."""
+    """Assignments of units to people that were valid at some time of the window, newest first."""
     held = station.roster.newest_assignments(when.from_ns, when.until_ns, limit)
     return [
         AssignmentAnswer(
@@ -58,7 +58,7 @@ def list_assignments(
 
 @router.post("/assignments", status_code=204)
 def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
-    """From now on this person wears this unit, and no other."""
+    """Assign a unit to a person, who from now on wears this unit and no other."""
     person = station.roster.person(new.person_id)
     if person is None:
         raise Problem(404, NO_PERSON)
@@ -67,5 +67,5 @@ def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
 
 @router.delete("/assignments/{unit_id}", status_code=204)
 def unassign(unit_id: UnitId, perform: Perform) -> None:
-    """This unit is not worn from now on."""
+    """End the assignment of a unit: from now on nobody wears it."""
     perform(Unassign(unit_id))

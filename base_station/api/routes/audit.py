@@ -28,7 +28,7 @@ class AuditEntryAnswer(BaseModel):
 
 
 class CarriedOut(BaseModel):
-    """Action that was done with an Idempotency-Key."""
+    """Action that a request with an Idempotency-Key has carried out."""
 
     action: str
     t_ms: int
@@ -36,8 +36,8 @@ class CarriedOut(BaseModel):
 
 @router.get("/idempotency-keys/{key}")
 def get_carried_out(key: IdempotencyKey, station: CurrentStation, who: Viewer) -> CarriedOut:
-    """For a client without an answer: the action of the request with this key, of the same user.
-    404: it was not carried out so far, or it was refused.
+    """Outcome of a request to which a client got no answer: the action that this user's request
+    with this key has carried out.  404 if it was not carried out so far, or was refused.
     """
     entry = station.records.audited(audit_entry_prefixes(who.username, key.strip('"')))
     if entry is None:

@@ -23,7 +23,7 @@ LatLon = tuple[float, float]
 
 
 class BaseMapAnswer(BaseModel):
-    """Degrees (WGS-84) of three of the picture's corners."""
+    """Three corners of the picture, in degrees (WGS-84)."""
 
     image_url: str
     upper_left: LatLon
@@ -45,8 +45,9 @@ def set_base_map(
     who: Administrator,
     crs: Annotated[str, Query(max_length=20)] = DEGREES,
 ) -> BaseMapAnswer:
-    """PNG, JPEG or WebP, written anew without its metadata; ``world``: the numbers of its world
-    file, in the order of its lines; ``crs``: the grid that they are in, by its EPSG number.
+    """Set the picture below the plan: PNG, JPEG or WebP, stored without its metadata.  ``world``:
+    the numbers of its world file, in the order of its lines; ``crs``: EPSG number of the grid in
+    which they are.
     """
     with station.image_lock:
         webp, image_hash, (width_px, height_px), smaller = normalize_map(image)

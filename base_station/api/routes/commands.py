@@ -48,7 +48,7 @@ class FloorTarget(Form):
 
 
 def _kind_of_target(target: object) -> object:
-    """The one key, which names the kind; None where there is not just one."""
+    """The only key of the target, which names its kind; None if there is not exactly one."""
     return next(iter(target)) if isinstance(target, dict) and len(target) == 1 else None
 
 
@@ -66,9 +66,9 @@ Target = Annotated[
 
 
 def members_of(target: object, station: Services) -> tuple[str, ...]:
-    """Ids of the people who are a crew or on a floor now; empty where the target is neither.
+    """Ids of the people in a crew or on a floor now; empty for any other kind of target.
 
-    A member whose floor is not known may be on it.
+    A member whose floor is not known is included, as that person may be on it.
     """
     if isinstance(target, CrewTarget):
         return station.roster.crew(target.crew)
@@ -109,7 +109,7 @@ class AllClear(Form):
 
 @router.get("/commands")
 def list_commands(station: Station, _: Viewer) -> list[CommandView]:
-    """Those that are open and the last closed ones, oldest first; the audit names all."""
+    """Open commands and the last closed ones, oldest first; the audit lists all."""
     return list(station.picture().commands)
 
 
@@ -120,7 +120,9 @@ def get_command(command_id: Id, station: Station, _: Viewer) -> CommandView:
 
 @router.post("/commands", status_code=201)
 def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
-    """It is sent to each unit until that answers, ``expires_s`` from now at the latest."""
+    """Send a command to the units of a target.  Each unit gets it again until it answers, for
+    ``expires_s`` from now at most.
+    """
     action = SendCommand(
         command_id=uuid.uuid4().hex,
         kind=CommandKind[new.kind.name],
@@ -138,7 +140,9 @@ def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
 
 @router.post("/commands/{command_id}/repeat")
 def repeat(command_id: Id, new: Repeat, station: Station, perform: Perform) -> CommandView:
-    """Send an order again, to one unit or to all that have not answered; they notify anew."""
+    """Send an order again to one unit, or to all units that have not answered; they notify their
+    wearers again.
+    """
     order = _command_or_404(station, command_id)
     unit_id = new.unit_id or ""
     kind = CommandKind[order.kind.upper()]
@@ -150,7 +154,7 @@ def repeat(command_id: Id, new: Repeat, station: Station, perform: Perform) -> C
 def give_all_clear(
     command_id: Id, new: AllClear, station: Station, perform: Perform
 ) -> CommandView:
-    """End an evacuation: all whom it was for are notified; answers with the all clear."""
+    """End an evacuation, and notify every member for whom it was.  The answer is the all clear."""
     _command_or_404(station, command_id)
     action = _later(CommandKind.ALL_CLEAR, new.expires_s, ended_command_id=command_id)
     return _command_or_404(station, perform(action).created_id)
@@ -158,14 +162,14 @@ def give_all_clear(
 
 @router.post("/commands/{command_id}/stop", status_code=204)
 def stop(command_id: Id, station: Station, perform: Perform) -> None:
-    """Stop the signal of a locate order."""
+    """Stop the signal that a locate order has started."""
     _command_or_404(station, command_id)
     perform(_later(CommandKind.END_ORDER, 600.0, ended_command_id=command_id))
 
 
 @router.post("/commands/{command_id}/confirm", status_code=204)
 def confirm(command_id: Id, by_radio: Confirmation, station: Station, perform: Perform) -> None:
-    """The member answered by radio: that acknowledges the command."""
+    """Enter that the member answered by radio, which acknowledges the command."""
     _command_or_404(station, command_id)
     perform(ConfirmCommand(command_id, by_radio.unit_id))
 
@@ -174,8 +178,8 @@ def confirm(command_id: Id, by_radio: Confirmation, station: Station, perform: P
 def undo_confirm(
     command_id: Id, by_radio: Confirmation, station: Station, perform: Perform
 ) -> None:
-    """The command waits again for this member, whose answer by radio was entered in error; so does
-    the PAR that it confirmed.
+    """Undo an answer by radio that was entered in error.  The command waits for this member again,
+    and so does the PAR that the answer confirmed.
     """
     _command_or_404(station, command_id)
     perform(UndoConfirmation(command_id, by_radio.unit_id))

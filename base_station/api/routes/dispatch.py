@@ -90,9 +90,10 @@ _Body = Annotated[bytes, Depends(_body)]
 def post_dispatch(
     request: Request, station: Station, perform: Perform, body: _Body
 ) -> DispatchReceipt:
-    """Report of the dispatch centre: a NENA EIDO or a plain JSON object.  It is offered on the
-    console, or opens an incident where the settings have it and none is open.  A later report with
-    the number updates it.  Parts that cannot be used are left out and named in ``warnings``.
+    """Hand in a report of the dispatch centre: a NENA EIDO or a plain JSON object.  It is offered
+    on the console; if the settings allow it and no incident is open, it opens one.  A later report
+    with the same number updates it.  Parts that cannot be used are left out and named in
+    ``warnings``.
     """
     _require_type(request, _REPORT_TYPES)
     try:
@@ -114,9 +115,7 @@ def post_dispatch(
 
 @router.get("/dispatch")
 def list_dispatches(station: Station, _: Viewer) -> list[OfferedDispatch]:
-    """Dispatches from which no incident was opened, the oldest first; before them that of the open
-    incident.
-    """
+    """Dispatches from which no incident was opened, oldest first, after that of the open incident."""
     picture = station.picture()
     incident = picture.incident
     of_incident = () if incident is None or incident.dispatch is None else (incident.dispatch,)
@@ -128,7 +127,7 @@ def list_dispatches(station: Station, _: Viewer) -> list[OfferedDispatch]:
 
 @router.post("/dispatch/dismissals", status_code=204)
 def dismiss_dispatch(form: Dismissal, station: Station, perform: Perform) -> None:
-    """Offer a dispatch no longer; an incident can still be opened from it."""
+    """Remove a dispatch from the console's offers; an incident can still be opened from it."""
     if known_dispatch(station.picture(), form.number) is None:
         raise Problem(
             404, coded("dispatch-not-listed", "There is no dispatch {number}.", number=form.number)
@@ -142,8 +141,8 @@ def dismiss_dispatch(form: Dismissal, station: Station, perform: Perform) -> Non
     openapi_extra={"requestBody": {"required": True, "content": _ALERT_CONTENT}},
 )
 def post_alert(request: Request, station: Station, who: Commander, body: _Body) -> AlertReceipt:
-    """Alert of the Common Alerting Protocol (CAP 1.2): shown on the plan until it expires; an
-    update or a cancellation takes off the alerts that it refers to.
+    """Hand in an alert of the Common Alerting Protocol (CAP 1.2). It is shown on the plan until it
+    expires; an update or a cancellation removes the alerts to which it refers.
     """
     _require_type(request, _ALERT_TYPES)
     if station.alerts is None:

@@ -60,7 +60,9 @@ def draft_plan(
     _: Commander,
     options: Annotated[Options, Depends(_options)],
 ) -> PlanDraft:
-    """The draft of a plan from a drawing: a picture to be scaled, or a plan to be set."""
+    """Make the draft of a plan from a drawing: a picture that is to be scaled, or a plan that can
+    be set.
+    """
     try:
         with station.image_lock:
             draft = draft_of(drawing, options)

@@ -63,7 +63,7 @@ class ShownEnrolment(BaseModel):
 
 @router.get("/enrolments")
 def list_enrolments(station: Station, _: Administrator) -> list[EnrolledUnit]:
-    """Units with a certificate that is not revoked; nothing of this is secret."""
+    """Units with a valid certificate that is not revoked.  The answer contains no secret."""
     with _as_refusal():
         registry = _authority(station).registry()
     return [
@@ -74,15 +74,15 @@ def list_enrolments(station: Station, _: Administrator) -> list[EnrolledUnit]:
 
 
 def _require_private(request: Request, station: Station, _: Administrator) -> None:
-    """Dependency: the answer goes over TLS, or does not leave this machine."""
+    """Dependency: refuses unless the answer goes over TLS or stays on this machine."""
     if not station.secure and (request.client is None or not is_loopback(request.client.host)):
         raise Problem(403, _NOT_PRIVATE)
 
 
 @router.post("/enrolments", status_code=201, dependencies=[Depends(_require_private)])
 def add_enrolment(new: NewEnrolment, station: Station, who: Administrator) -> ShownEnrolment:
-    """Makes a certificate and its private key, of which the station keeps none: it cannot answer
-    this again.  Where the answer was lost, the enrolment is renewed.
+    """Enrol a unit: make its certificate and private key.  The station does not keep the key, so
+    this answer cannot be given twice; if it was lost, renew the enrolment.
     """
     validate_unit_id(new.unit_id)
     authority = _authority(station)
@@ -111,7 +111,7 @@ def _authority(station: Services) -> PkiFolder:
 
 @contextmanager
 def _as_refusal() -> Iterator[None]:
-    """Answer a refusal of the authority as one: the request's form is right."""
+    """Answer a refusal of the certificate authority by a problem, as the request itself was valid."""
     try:
         yield
     except ConfigError as error:

@@ -66,9 +66,10 @@ async def export_incident(
     only: Names = (),
     gzip: bool = False,
 ) -> Response:
-    """``kind``: trails as shown at the time, or as known afterwards; ``only``:
-    units, people or crews, else everyone; ``gzip``: a compressed file, beside which the answer is
-    compressed on its way to clients that accept that.
+    """Write the trails of an incident in a file format.  ``kind``: trails as shown at the time, or
+    as known afterwards; ``only``: units, people or crews, otherwise everyone; ``gzip``: write a
+    compressed file.  Without it the answer is still compressed on its way to clients that accept
+    this.
     """
     selection = TrackSelection(only, when.from_ns, when.until_ns)
     async with station.export_lock:
@@ -95,9 +96,9 @@ async def export_incident(
 async def export_whole_incident(
     incident_id: Id, station: CurrentStation, who: Viewer, radio: bool = False
 ) -> Response:
-    """All of the incident as one MCAP file that stands alone: records, pictures of consoles,
-    decisions, plan, pins, thresholds, people and imported files.  With ``radio``, by a commander,
-    with the audio of the radio channels.  ``muster base replay FILE`` shows it.
+    """Write the whole incident as one MCAP file that stands alone: records, what consoles showed,
+    decisions, plan, pins, thresholds, people and imported files.  ``radio``: with the audio of the
+    radio channels, for a commander.  ``muster base replay FILE`` shows it.
     """
     if radio and (who.role < Role.COMMANDER or not scope_covers(who, ("radio",))):
         raise Problem(
@@ -150,7 +151,7 @@ def _begun(
     kind: TrailKind,
     selection: TrackSelection,
 ) -> tuple[Exporter, Iterator[bytes]]:
-    """The exporter, and its tracks; raises all problems of the request."""
+    """Return the exporter and its tracks; raises every problem that the request can have."""
     try:
         exporter = exporter_of(format_name)
     except UserError as error:
@@ -173,7 +174,7 @@ def _accepts_gzip(accept_encoding: str) -> bool:
 
 
 async def _in_turn(content: Iterator[bytes], lock: asyncio.Lock) -> AsyncIterator[bytes]:
-    """Make one part at a time of all exports; a slow client delays no other."""
+    """Make the parts of all exports one at a time; a slow client delays no other."""
     while True:
         async with lock:
             part = await run_in_threadpool(next, content, None)

@@ -46,7 +46,7 @@ class Progress(BaseModel):
 
 @router.get("/forgettings")
 def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
-    """Those under way and the last that are over."""
+    """Erasures that are under way, and the last finished ones."""
     return [] if station.erasures is None else list(map(_progress, station.erasures.all()))
 
 
@@ -54,8 +54,8 @@ def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
 def forget_person(
     person_id: Id, confirmation: PersonConfirmation, station: Station, who: Administrator
 ) -> Progress:
-    """Forget name, photo and all positions of a person; goes on until it is done, over restarts
-    too.  A person who was removed from the roster is found by every former name.
+    """Erase the name, photo and all positions of a person.  The work goes on until it is finished,
+    also after restarts.  A person who was removed from the roster is found by any former name.
     """
     _desk(station)
     person = station.roster.person(person_id)
@@ -82,7 +82,7 @@ def forget_person(
 def forget_incident(
     incident_id: Id, confirmation: NameConfirmation, station: Station, who: Administrator
 ) -> Progress:
-    """Forget the people of an incident and their positions; its name, times and alarms stay."""
+    """Erase the people of an incident and their positions; its name, times and alarms stay."""
     _desk(station)
     incident = incident_or_404(station, incident_id)
     name = station.roster.shown(incident.name)
@@ -100,8 +100,8 @@ def forget_incident(
 
 
 def accept_from_command(station: Services, by: str, kind: str, subject_id: str) -> ErasureJob:
-    """Accepts an order of a command at the station's machine, which has had the name confirmed
-    there.  Raises UserError with the reason where it is refused.
+    """Accept an erasure that was ordered and confirmed by a command on the station's machine.
+    Raises UserError with the reason where it is refused.
     """
     refusal = None if station.ha_status is None else station.ha_status.refusal()
     if refusal is not None:
@@ -113,8 +113,8 @@ def accept_from_command(station: Services, by: str, kind: str, subject_id: str) 
 
 
 def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJob:
-    """Queue the job.  Units of a person are unassigned: else later messages of the unit would never
-    be forgotten.
+    """Queue the erasure.  The person's units are unassigned first: later messages of these units
+    would otherwise never be erased.
     """
     desk = _desk(station)
     if kind == "person":

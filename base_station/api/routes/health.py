@@ -27,7 +27,7 @@ class LogSegmentAnswer(Answer, frozen=True):
 
 
 class Health(HealthView, frozen=True, kw_only=True):
-    """Health as the consoles see it, with the number of consoles and the segments of the log."""
+    """Health as the consoles show it, with the number of consoles and the segments of the log."""
 
     consoles: int
     segments: tuple[LogSegmentAnswer, ...]

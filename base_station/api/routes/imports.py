@@ -78,7 +78,7 @@ class ImportedTracks(Answer, frozen=True):
 
 @router.get("/incidents/{incident_id}/imports")
 def list_imports(incident_id: Id, station: CurrentStation, _: Viewer) -> list[ImportAnswer]:
-    """Files that were brought into the incident, oldest first."""
+    """Files that were imported into the incident, oldest first."""
     incident_or_404(station, incident_id)
     catalogue = station.imports
     return [_answer(station, catalogue, row) for row in station.records.imports_of(incident_id)]
@@ -99,9 +99,9 @@ async def add_import(
     shift_s: ShiftS = 0.0,
     utc_offset_h: UtcOffsetH = None,
 ) -> ImportAnswer:
-    """Bring in a GPX or KML track, a photograph with a place and a time, or an incident of another
-    station (MCAP); it is kept unchanged.  The same file again changes nothing, and has the same
-    answer.
+    """Import a GPX or KML track, a photograph with a place and a time, or an incident of another
+    station (MCAP). The file is kept unchanged.  Importing the same file again changes nothing and
+    gives the same answer.
     """
     incident = incident_or_404(station, incident_id)
     catalogue = station.imports
@@ -122,7 +122,7 @@ async def add_import(
 
 @router.delete("/incidents/{incident_id}/imports/{import_id}", status_code=204)
 def remove_import(incident_id: Id, import_id: Id, station: CurrentStation, who: Commander) -> None:
-    """Take a file out of the incident again; the station's copy of it is removed."""
+    """Remove an imported file from the incident; the station deletes its copy."""
     catalogue = station.imports
     _row_or_404(catalogue, incident_id, import_id)
     station.perform(who.username, RemoveImport(incident_id, import_id))
@@ -137,7 +137,9 @@ def imported_tracks(
     _: Viewer,
     every_s: EverySeconds = 1,
 ) -> ImportedTracks:
-    """Tracks of a file on the incident's plan; a photograph is a track of one point."""
+    """Tracks of an imported file, in metres on the incident's plan; a photograph is a track of one
+    point.
+    """
     incident = incident_or_404(station, incident_id)
     catalogue = station.imports
     row = _row_or_404(catalogue, incident_id, import_id)
@@ -164,7 +166,7 @@ def imported_tracks(
 def imported_picture(
     incident_id: Id, import_id: Id, station: CurrentStation, _: Viewer
 ) -> Response:
-    """A photograph, small, without its metadata."""
+    """Imported photograph, reduced in size and without its metadata."""
     catalogue = station.imports
     row = _row_or_404(catalogue, incident_id, import_id)
     content = _content_or_404(catalogue, row)
@@ -180,7 +182,7 @@ def imported_picture(
     responses=file_response("application/octet-stream"),
 )
 def imported_file(incident_id: Id, import_id: Id, station: CurrentStation, who: Viewer) -> Response:
-    """The file as it came, byte for byte."""
+    """Imported file, unchanged to the byte."""
     catalogue = station.imports
     row = _row_or_404(catalogue, incident_id, import_id)
     path = catalogue.folder.original(incident_id, import_id)

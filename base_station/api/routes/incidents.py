@@ -87,7 +87,9 @@ class NewIncident(Form):
 
 
 class ClosingForm(Form):
-    """Alarms and units over which the incident is closed knowingly; newer ones were not shown."""
+    """Open alarms, and units inside, despite which the incident is to be closed; the user has seen
+    these, and no newer ones.
+    """
 
     despite_alarm_ids: Annotated[tuple[AlarmIdText, ...], Field(max_length=MOST_NAMED)] = ()
     despite_unit_ids: Annotated[tuple[UnitIdText, ...], Field(max_length=MOST_NAMED)] = ()
@@ -123,10 +125,10 @@ def list_incidents(
     person: SearchText = "",
     alarm: SearchText = "",
 ) -> list[IncidentAnswer]:
-    """Those opened in the window, newest first.
+    """Incidents that were opened in the window, newest first.
 
-    With ``text``, ``person`` and ``alarm`` those of which all that is true; case and accents do
-    not count.
+    ``text``, ``person`` and ``alarm`` restrict the list to incidents that match all of them; case
+    and accents are ignored.
     """
     query = IncidentQuery(text, person, alarm, when)
     if query.is_plain:
@@ -175,7 +177,9 @@ def get_incident(incident_id: Id, station: StationWithActions, _: Viewer) -> Inc
 
 @router.get("/incidents/{incident_id}/dispatch")
 def incident_dispatch(incident_id: Id, station: CurrentStation, _: Viewer) -> DispatchView | None:
-    """Newest report of the dispatch from which the incident was opened; null: from none."""
+    """Newest report of the dispatch from which the incident was opened; null if it was opened
+    without one.
+    """
     number = incident_or_404(station, incident_id).dispatch_number
     report = station.records.dispatch(number) if number else None
     return None if report is None else dispatch_view(report, station.roster.known)
@@ -185,9 +189,9 @@ def incident_dispatch(incident_id: Id, station: CurrentStation, _: Viewer) -> Di
 def close_incident(
     incident_id: Id, station: Station, perform: Perform, closing: ClosingForm | None = None
 ) -> None:
-    """Refused (409), with their names, where alarms of units are open or people are inside that
-    are not in ``closing``; the problem has all their ids as members of the same names.  Orders of
-    the incident that have no answer yet are withdrawn.
+    """Close an incident.  409 if alarms of its units are open or people are inside that ``closing``
+    does not name; the problem has all their ids, in members of the same names.  Orders of the
+    incident without an answer are withdrawn.
     """
     despite = closing or ClosingForm()
     alarm_ids, unit_ids = despite.despite_alarm_ids, despite.despite_unit_ids
@@ -222,7 +226,7 @@ def incident_alarms(
 
 
 def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
-    """For a request that is repeated after the incident's end: only the tables have it."""
+    """The incident of a request that is repeated after its end: only the tables have it."""
     station.projection.flush()
     incident = station.records.incident(incident_id)
     if incident is None:
@@ -261,7 +265,9 @@ def _past_alarm(
 def _is_raised_anew(
     before: models.AlarmTransition, now: models.AlarmTransition, levels: Sequence[str]
 ) -> bool:
-    """It happened again, or got worse; an unacknowledged one may also have eased."""
+    """True if the condition occurred again or became worse.  A transition to *raised* may also
+    report that an unacknowledged alarm became less severe.
+    """
     known = before.level in levels and now.level in levels
     eased = known and levels.index(now.level) < levels.index(before.level)
     return now.state == "raised" and not eased

@@ -56,11 +56,11 @@ Deltas = Literal["units", "fields"]  # of a changed unit: all fields, or the cha
 
 
 class PictureRequest(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):
-    """The picture anew, please."""
+    """Request of a console for a new snapshot."""
 
 
 class ShownCount(msgspec.Struct, forbid_unknown_fields=True, tag="shown"):
-    """So many messages of this connection, of any type, were shown."""
+    """Number of messages of this connection, of any type, that the console has shown."""
 
     count: int
 
@@ -96,7 +96,7 @@ async def _serve(socket: WebSocket, hub: Hub | None, deltas: Deltas) -> None:
 
 
 async def _watch(socket: WebSocket, services: Services, hub: Hub, deltas: Deltas) -> None:
-    """Until one of the three is over."""
+    """Run the three tasks of a connection until one of them ends."""
     client = hub.join_paced() if deltas == "fields" else hub.join()
     tasks = {
         asyncio.create_task(_send(socket, client)),
@@ -171,7 +171,7 @@ async def _check_login(socket: WebSocket, services: Services) -> None:
 
 
 def _as_reason(error: StoreError) -> str:
-    """As much as a close frame holds."""
+    """The part of a text that fits into a close frame."""
     return str(error).encode()[:120].decode(errors="ignore")
 
 

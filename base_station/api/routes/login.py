@@ -41,7 +41,7 @@ def _me(principal: Principal, station: LoginServices) -> Me:
 
 
 class Ticket(BaseModel):
-    """Logs its holder in at the other station's console, as the user who requested it."""
+    """Ticket that logs its holder in at the other station's console, as the user who requested it."""
 
     ticket: str
     lasts_s: int
@@ -90,7 +90,7 @@ def _log_in(
 def log_in_with_ticket(
     shown: ShownTicket, request: Request, response: Response, station: Logins, throttle: Throttle
 ) -> Me:
-    """Log in with a ticket of the other station, once."""
+    """Log in with a ticket of the other station; each is valid once."""
     address = request.client.host if request.client else ""
     throttle.check_network(address)
     secret = station.accounts.redeem_login_ticket(shown.ticket)
@@ -106,7 +106,7 @@ def log_in_with_ticket(
 def set_session_cookie(
     request: Request, response: Response, station: LoginServices, secret: str
 ) -> None:
-    """In the place of the session that the browser had, which is over."""
+    """Set the cookie of a new session and end the browser's former one."""
     before = request.cookies.get(COOKIE)
     if before is not None:
         station.accounts.log_out(before)
@@ -127,7 +127,9 @@ def log_out(request: Request, response: Response, station: Logins) -> None:
 
 @router.post("/hand-over")
 def create_login_ticket(request: Request, station: Logins, _: Viewer) -> Ticket:
-    """Consoles ask now and then, so that users need not log in again when this station dies."""
+    """Issue a ticket for the other station's console.  Consoles ask for one regularly, so that
+    their users need not log in again when this station fails.
+    """
     ticket = station.accounts.create_login_ticket(request.cookies.get(COOKIE, ""))
     if ticket is None:
         raise Problem(

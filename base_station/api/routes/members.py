@@ -34,7 +34,7 @@ class NewMembers(Form):
 
 @router.get("/incidents/{incident_id}/members")
 def list_members(incident_id: Id, station: Station, _: Viewer) -> list[Member]:
-    """The members of an open incident now; people first, by crew and name."""
+    """Members of an open incident now: people first, by crew and name."""
     open_or_404(station, incident_id)
     return _members(station, incident_id)
 
@@ -49,8 +49,8 @@ def list_unassigned(station: Station, _: Viewer) -> list[Member]:
 def assign_members(
     incident_id: Id, new: NewMembers, station: Station, perform: Perform
 ) -> list[Member]:
-    """They work in this incident from now on, and in no other: their PAR is to be confirmed here.
-    Where it has a site of its own, their paths begin there.
+    """Assign units and their wearers to this incident, and to no other.  Their PAR is then to be
+    confirmed here.  If the incident has a site of its own, their paths begin there.
     """
     open_or_404(station, incident_id)
     perform(AssignIncident(incident_id, _units_of(new.target, station)))
@@ -59,7 +59,7 @@ def assign_members(
 
 @router.delete("/incidents/{incident_id}/members/{unit_id}", status_code=204)
 def release_member(incident_id: Id, unit_id: UnitId, station: Station, perform: Perform) -> None:
-    """The unit and its wearer are in no incident from now on."""
+    """Remove a unit and its wearer from the incident; they are then in none."""
     if not any(one.unit_id == unit_id for one in _members(station, incident_id)):
         raise Problem(
             404,

@@ -14,7 +14,7 @@ TEXT_FORMAT = "text/plain; version=0.0.4; charset=utf-8"
 
 @router.get("/metrics", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 def get_metrics(station: Station, _: Viewer) -> Response:
-    """Numbers of the station for Prometheus, in its text format."""
+    """Metrics of the station in Prometheus' text format."""
     # A fifth of a second of a start, which a station without Prometheus does without.
     from base_station.api.metrics import exposition  # noqa: PLC0415
 

@@ -86,8 +86,9 @@ def import_people(
     who: Commander,
     preview: bool = False,
 ) -> PeopleImport:
-    """People of a CSV file with the columns Name, Crew and Role: those known by name are changed,
-    all others are added.  With a fault in any line none is (422).  It may be sent again.
+    """Import people from a CSV file with the columns Name, Crew and Role.  People with a known name
+    are changed, others are added.  If any line has a fault, nothing is imported (422). The request
+    may be repeated.
     """
     try:
         listed, faults = read_people(csv)
@@ -146,7 +147,7 @@ def _refusal(faults: list[CsvFault]) -> str:
 
 
 def _announce(steps: list[ImportStep], station: Services, by: str) -> None:
-    """Wearers are shown with the new crew at once; the audit names every person."""
+    """Show wearers with the new crew at once; the audit names every person."""
     done = {
         f"imported-{secrets.token_hex(8)}": (
             "AddedPerson" if step.kind == "add" else "ChangedPerson",
@@ -173,7 +174,7 @@ def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
 
 @router.put("/people/{person_id}")
 def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> PersonView:
-    """Change a person; a wearer is shown with the new name at once."""
+    """Change a person's name, crew or role; a wearer is shown with them at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
         raise Problem(404, NO_PERSON)
@@ -197,7 +198,7 @@ def set_photo(
     station: Station,
     who: Commander,
 ) -> None:
-    """JPEG, PNG or WebP; kept as a small square without its metadata."""
+    """Set a person's photo: JPEG, PNG or WebP, stored as a small square without its metadata."""
     if station.roster.person(person_id) is None:
         raise Problem(404, NO_PERSON)
     with station.image_lock:

@@ -48,7 +48,7 @@ Heading = Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)]
 
 
 class PlaceForm(Form):
-    """A place in the incident frame, and as well as it is known."""
+    """Place in the incident frame, with the standard deviation of what is known of it."""
 
     north_m: Metres
     east_m: Metres
@@ -94,20 +94,22 @@ _BEACON_MAY_KEEP = frozenset({"label", "floor", "std_m", "reach_m"})
 
 @router.get("/pins")
 def list_pins(station: Station, _: Viewer) -> list[PinView]:
-    """In the order of setting, each with its verdict."""
+    """Pins in the order in which they were set, each with its verdict."""
     return list(station.picture().pins)
 
 
 @router.post("/pins", status_code=201)
 def set_pin(form: PinForm, station: Station, perform: Perform) -> PinView:
-    """This unit was here then: its whole past is solved again."""
+    """Set a pin: the unit was at this place at this time.  Its whole trail is solved again."""
     done = perform(_place_pin(station, uuid.uuid4().hex, form))
     return _pin_or_404(station, done.created_id)
 
 
 @router.post("/pins/start", status_code=201)
 def start_together(form: StartForm, station: Station, perform: Perform) -> list[PinView]:
-    """These units were together here: where their paths begin, or then."""
+    """Set a common start of several units: they were together at this place, either where their
+    paths begin or at the given time.
+    """
     fields = form.model_dump(exclude={"t_ms", "unit_ids"})
     unit_ids = tuple(form.unit_ids)
     action = StartTogether(uuid.uuid4().hex, unit_ids, form.t_ms * NS_PER_MS, **fields)
@@ -117,7 +119,7 @@ def start_together(form: StartForm, station: Station, perform: Perform) -> list[
 
 @router.post("/pins/meeting", status_code=201)
 def set_meeting(form: MeetingForm, station: Station, perform: Perform) -> PinView:
-    """Two people met; the place may be unknown."""
+    """Set a meeting of two people, at a place that may be unknown."""
     met = uuid.uuid4().hex, form.unit_id, form.other_unit_id
     action = SetMeeting(*met, _time(station, form.t_ms), form.std_m, form.note)
     return _pin_or_404(station, perform(action).created_id)
@@ -125,7 +127,7 @@ def set_meeting(form: MeetingForm, station: Station, perform: Perform) -> PinVie
 
 @router.put("/pins/{pin_id}")
 def move_pin(pin_id: Id, form: PinForm, station: Station, perform: Perform) -> PinView:
-    """Remove the pin and set it anew; fields that are left out stay as they were, the time too."""
+    """Replace a pin by one at another place or time; fields that are left out keep their values."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
         raise Problem(
@@ -144,7 +146,7 @@ def move_pin(pin_id: Id, form: PinForm, station: Station, perform: Perform) -> P
 
 @router.delete("/pins/{pin_id}", status_code=204)
 def remove_pin(pin_id: Id, station: Station, perform: Perform) -> None:
-    """Everything is then as if it had never been set."""
+    """Remove a pin; all trails are then as if it had never been set."""
     pins = station.picture().pins
     if not any(pin_id in (one.pin_id, one.pin_id.partition(":")[0]) for one in pins):
         raise Problem(404, _NO_PIN)
@@ -158,7 +160,7 @@ def list_beacons(station: Station, _: Viewer) -> list[BeaconView]:
 
 @router.put("/beacons/{beacon_id}")
 def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, perform: Perform) -> BeaconView:
-    """Set or change the place of a beacon or tag; fields that are left out stay as they were."""
+    """Set or change the place of a beacon or tag; fields that are left out keep their values."""
     before = _beacon(station, beacon_id)
     if before is not None:
         left_out = _BEACON_MAY_KEEP - form.model_fields_set

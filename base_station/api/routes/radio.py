@@ -33,7 +33,9 @@ LengthMs = Annotated[int, Query(ge=1, le=MAX_SPAN_MS)]
 
 
 class RadioChannelAnswer(Answer, frozen=True):
-    """Spans in order; between them nothing was recorded, or the channel was silent."""
+    """Spans of a radio channel, in order.  Between them nothing was recorded, or the channel was
+    silent.
+    """
 
     name: str
     recorded_ms: tuple[tuple[int, int], ...]
@@ -41,7 +43,7 @@ class RadioChannelAnswer(Answer, frozen=True):
 
 
 class RadioAnswer(Answer, frozen=True):
-    """Channels of which anything was recorded in the incident."""
+    """Radio channels that were recorded during the incident."""
 
     from_ms: int
     until_ms: int
@@ -50,7 +52,7 @@ class RadioAnswer(Answer, frozen=True):
 
 @router.get("/incidents/{incident_id}/radio")
 def list_radio_channels(incident_id: Id, station: CurrentStation, _: Viewer) -> RadioAnswer:
-    """Spans in which each radio channel was recorded, and in which there was voice on it."""
+    """Spans in which each radio channel was recorded, and those in which it carried voice."""
     from_ns, until_ns = _incident_span(station, incident_id)
     log = _log(station)
     try:
@@ -86,8 +88,9 @@ async def radio_audio(
     from_ms: AtMs,
     length_ms: LengthMs,
 ) -> Response:
-    """A window as Opus in Ogg, an hour at most, and no more than the incident.  It has the
-    incident's time, second for second: unrecorded times are silent.  Ranges can be requested.
+    """Audio of a window as Opus in Ogg: an hour at most, within the incident.  Each second of the
+    audio is a second of the incident: times that were not recorded are silent.  Byte ranges can be
+    requested.
     """
     window = Window(from_ms * NS_PER_MS, (from_ms + length_ms) * NS_PER_MS)
     content = await run_in_threadpool(_audio, station, incident_id, channel, window)

@@ -48,13 +48,15 @@ class Recording(BaseModel):
 
 @router.get("/recordings")
 def list_recordings(station: Station, _: Viewer) -> list[Recording]:
-    """Those that are being pulled and the last that are over."""
+    """Transfers of recordings that are under way, and the last finished ones."""
     return [_recording(pull) for pull in _desk(station).transfers()]
 
 
 @router.post("/recordings", status_code=202)
 def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Recording:
-    """It is pulled behind live data until it is there, also after restarts and lost links."""
+    """Start to transfer a unit's raw recording.  Live data goes first; the transfer continues until
+    it is complete, also after restarts and lost links.
+    """
     desk = _desk(station)
     if new.unit_id not in station.roster.registered_units():
         raise Problem(404, coded("recording-no-unit", "There is no unit {unit}.", unit=new.unit_id))
@@ -66,7 +68,7 @@ def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Re
 
 @router.delete("/recordings/{fetch_id}", status_code=204)
 def stop_recording(fetch_id: Id, station: Station, who: Commander) -> None:
-    """Stop a pull; the received part is kept."""
+    """Stop a transfer; the received part is kept."""
     if not _desk(station).stop(fetch_id):
         raise Problem(404, coded("recording-gone", "There is no such recording being pulled."))
     station.records.audit(who.username, "StoppedRecording", fetch_id)

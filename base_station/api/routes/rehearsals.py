@@ -76,8 +76,9 @@ async def rehearse_incident(
     change: Changes = (),
     sweep: ShortText = "",
 ) -> RehearsalAnswer:
-    """Compare the alarms that other thresholds would have raised in a closed incident with those
-    of the thresholds of then.  Takes some seconds for each hour of wear; one at a time.
+    """Compare the alarms that other thresholds would have raised in a closed incident with those of
+    the thresholds of that time.  This takes some seconds for each hour of wear; one rehearsal runs
+    at a time.
     """
     incident = await run_in_threadpool(_closed, station, incident_id)
     swept, points = _points(change, sweep)

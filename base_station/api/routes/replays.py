@@ -38,7 +38,7 @@ class NewReplay(Form):
 
 
 class ReplayChange(Form):
-    """Changes of the given fields: first the place, then the speed, then whether it plays."""
+    """Changes of a replay, applied in this order: position in time, speed, whether it plays."""
 
     at_ms: Annotated[int, Field(ge=0, le=MAX_TIME_MS)] | None = None
     speed: Speed | None = None
@@ -57,7 +57,9 @@ def list_replays(station: Station, _: Viewer) -> list[Replay]:
 
 @router.post("/replays", status_code=201)
 def start_replay(new: NewReplay, station: CurrentStation, who: Viewer, request: Request) -> Replay:
-    """It plays from its beginning; it ends by itself when it has no viewer any more."""
+    """Start a replay of an incident, which plays from its beginning.  It ends by itself when no
+    console shows it any more.
+    """
     loop: asyncio.AbstractEventLoop = request.app.state.loop
     incident = incident_or_404(station, new.incident_id)
     opened = station.replays.open(incident, new.speed, loop, who.username)
@@ -93,7 +95,9 @@ def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Vi
 
 @router.delete("/replays/{replay_id}", status_code=204)
 def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
-    """End one's own; a commander may end all but the one that a station was started for."""
+    """End a replay of one's own.  A commander may end the replays of others, but not the one for
+    which a station was started.
+    """
     replay = _replay_or_404(station, replay_id)
     if replay.persistent:
         raise Problem(

@@ -27,7 +27,9 @@ _HTML, _PDF = "text/html; charset=utf-8", "application/pdf"
     responses=file_response("text/html"),
 )
 async def report_as_html(incident_id: Id, station: CurrentStation, who: Viewer) -> Response:
-    """Summary, timeline, orders, plan with trails, people and alarms, as one page."""
+    """Report on the incident as one HTML page: summary, timeline, orders, plan with trails, people
+    and alarms.
+    """
     async with station.export_lock:
         return await run_in_threadpool(_report, incident_id, station, who, as_pdf=False)
 
@@ -38,7 +40,7 @@ async def report_as_html(incident_id: Id, station: CurrentStation, who: Viewer) 
     responses=file_response("application/pdf"),
 )
 async def report_as_pdf(incident_id: Id, station: CurrentStation, who: Viewer) -> Response:
-    """The same as a PDF; a problem (503) where the station lacks the library that writes it."""
+    """Report on the incident as a PDF. 503 if the station lacks the library that writes it."""
     async with station.export_lock:
         return await run_in_threadpool(_report, incident_id, station, who, as_pdf=True)
 

@@ -20,7 +20,7 @@ router = APIRouter(tags=["commands"])
 
 
 class GuideForm(Form):
-    """Rescuer who is sent."""
+    """Rescuer who is sent to the member."""
 
     rescuer_id: UnitIdText
 
@@ -42,8 +42,9 @@ def routes_to_member(
     _: Viewer,
     rescuer_id: Annotated[UnitIdText | None, Query()] = None,
 ) -> list[RouteAnswer]:
-    """Routes of the three rescuers with the shortest known ways, the nearest first, or of the one
-    that is named.  Without enough known ways the nearest in a straight line follow.
+    """Routes to a member: of the three rescuers with the shortest known ways, the nearest first, or
+    of the rescuer that is named.  If fewer than three have a known way, those nearest in a straight
+    line follow.
     """
     return find_routes(station, unit_id, rescuer_id)
 
@@ -58,15 +59,16 @@ def list_guides(guidance: Guiding, _: Viewer) -> list[GuideAnswer]:
 def begin_guide(
     unit_id: UnitId, form: GuideForm, station: Station, guidance: Guiding, perform: Perform
 ) -> GuideAnswer:
-    """The next legs of the way are sent to the rescuer's unit as messages, now and as the rescuer
-    advances, until the member's alarms are resolved.  A rescuer is guided to one member at a time.
+    """Guide a rescuer to a member.  The next legs of the route are sent to the rescuer's unit as
+    messages, now and as the rescuer advances, until the member's alarms are resolved.  A rescuer is
+    guided to one member at a time.
     """
     return _answer(guidance.begin(station, perform.by, unit_id, form.rescuer_id, perform))
 
 
 @router.delete("/guides/{rescuer_id}", status_code=204)
 def end_guide(rescuer_id: UnitId, station: Station, guidance: Guiding, perform: Perform) -> None:
-    """End the guidance; the rescuer's unit receives its end."""
+    """End the guidance of a rescuer, whose unit is notified."""
     if not guidance.end(station, rescuer_id, perform):
         raise Problem(404, coded("rescuer-not-guided", "This rescuer is not guided."))
 

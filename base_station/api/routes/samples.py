@@ -73,9 +73,9 @@ def post_samples(
     who: Viewer,
     body: Annotated[bytes, Depends(_body)],
 ) -> SamplesReceipt:
-    """Raw inertial samples of a unit, posted with its token: they are logged, and tracked by the
-    unit's tracking agent, as those from the bus.  Answered once they are on the disk; a batch that
-    is sent again is kept once.
+    """Hand in raw inertial samples of a unit, with its token.  They are logged, and tracked by the
+    unit's tracking agent, in the same way as those from the bus.  The answer is given once they are
+    on disk; a batch that is sent again is stored once.
     """
     intake = _intake_for(unit_id, station, who)
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
@@ -113,7 +113,9 @@ def list_unit_tokens(unit_id: UnitId, station: Station, _: Administrator) -> lis
 def add_unit_token(
     unit_id: UnitId, new: NewUnitToken, station: Station, who: Administrator
 ) -> UnitTokenSecret:
-    """A token with which this unit posts samples, and nothing else; it is never shown again."""
+    """Create a token with which this unit can post samples, and do nothing else.  It is shown in
+    this answer only.
+    """
     _require_registered(station, unit_id)
     expires_ns = None if new.days is None else station.clock.utc_ns() + new.days * NS_PER_DAY
     token_id, secret = station.accounts.unit_tokens.add(unit_id, who.username, expires_ns)
@@ -129,7 +131,9 @@ def remove_unit_token(unit_id: UnitId, token_id: Id, station: Station, who: Admi
 
 
 def _intake_for(unit_id: str, station: Services, who: Viewer) -> SampleIntake:
-    """Intake for those who may post samples of this unit: the unit itself, or an administrator."""
+    """Intake for a principal who may post samples of this unit: the unit itself, or an
+    administrator.
+    """
     if who.unit_id and who.unit_id != unit_id:
         raise Problem(
             403,

@@ -29,7 +29,7 @@ router = APIRouter(tags=["site"], route_class=UploadRoute)
 
 
 class AnchorForm(Form):
-    """The incident frame's origin (WGS-84) and the true heading of the plan's north."""
+    """Origin of the incident frame (WGS-84) and the true heading of the plan's north."""
 
     lat_deg: Annotated[float, Field(ge=-90.0, le=90.0)]
     lon_deg: Annotated[float, Field(ge=-180.0, le=180.0)]
@@ -38,7 +38,9 @@ class AnchorForm(Form):
 
 
 async def _json_body(request: Request) -> bytes:
-    """As it came: a plan of 11 MB that is parsed in the loop stops every console for a second."""
+    """The body as it came: parsing a plan of 11 MB in the event loop would stop all consoles for a
+    second.
+    """
     body = await request.body()
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind not in _PLAN_CONTENT:
@@ -70,7 +72,9 @@ def get_anchor(
 def set_anchor(
     form: AnchorForm, station: Station, perform: Perform, incident_id: Id | None = None
 ) -> None:
-    """``incident_id``: on whose site; it may be left out where one incident is open, or none."""
+    """Set the anchor of a site.  ``incident_id`` names the incident whose site it is; it may be
+    left out if one incident is open, or none.
+    """
     named = site_incident_id(station, incident_id)
     perform(SetAnchor(**form.model_dump(), incident_id=named))
 
@@ -93,9 +97,10 @@ def get_plan(station: CurrentStation, _: Viewer, incident_id: Id | None = None) 
 def set_plan(
     perform: Perform, station: Station, plan: _PlanBody, incident_id: Id | None = None
 ) -> None:
-    """GeoJSON (RFC 7946) in site metres; the documentation of messages shows one.  It is checked
-    whole, and refused with the feature that cannot be used (422).  ``incident_id``: on whose site;
-    it may be left out where one incident is open, or none.
+    """Set the plan of a site: GeoJSON (RFC 7946) in site metres, of which the documentation of
+    messages shows an example.  It is checked whole; a feature that cannot be used is named in the
+    problem (422). ``incident_id`` names the incident whose site it is; it may be left out if one
+    incident is open, or none.
     """
     named = site_incident_id(station, incident_id)
     if not _is_object(plan):
@@ -112,7 +117,7 @@ def _site_id(station: Services, incident_id: str | None) -> str:
 
 
 def _is_object(body: bytes) -> bool:
-    """True where it is JSON and begins as an object does; its content is checked later."""
+    """True if the body is JSON and begins as an object does; its content is checked later."""
     try:
         return bytes(msgspec.json.decode(body, type=msgspec.Raw)).lstrip().startswith(b"{")
     except (msgspec.DecodeError, UnicodeDecodeError):

@@ -26,14 +26,16 @@ def get_standby(station: Station, _: Viewer) -> StandbyView:
 
 @router.get("/standby/leads")
 def get_leads(station: Station, response: Response) -> Leads:
-    """For the other station's console, of another origin, which is not logged in here yet."""
+    """Tell whether this station leads.  For the console of the other station, which has another
+    origin and is not logged in here yet.
+    """
     response.headers["Access-Control-Allow-Origin"] = "*"
     return Leads(leads=station.ha_status is None or station.ha_status.refusal() is None)
 
 
 @router.post("/standby/take-over", status_code=202)
 def take_over(station: Station, who: Commander) -> None:
-    """This station leads from now on; the other one, if reachable, becomes its standby."""
+    """Make this station the leading one; the other one, if it can be reached, becomes its standby."""
     ha_status = _ha_status_or_404(station)
     station.records.audit(who.username, "TakeOverByHand", ha_status.view().station)
     ha_status.take_over()

@@ -57,8 +57,9 @@ async def unit_timeline(
     until_ms: UntilMs = MAX_TIME_MS,
     buckets: Buckets = 600,
 ) -> Response:
-    """Downsampled so that peaks stay.  The last 24 hours of a longer span, until now at the
-    latest: the answer has the span that it is of.
+    """Measured and estimated values of a unit over a span of time, downsampled in a way that keeps
+    peaks.  Of a span longer than 24 hours the last 24 are given, until now at the latest; the
+    answer states its span.
     """
     until_ns = min(until_ms * NS_PER_MS, station.clock.utc_ns())
     from_ns = max(from_ms * NS_PER_MS, until_ns - MAX_SPAN_NS)

@@ -23,7 +23,7 @@ EverySeconds = Annotated[int, Query(ge=1, le=3600)]
 
 
 class TrackPointAnswer(Answer, frozen=True):
-    """NED metres about the site anchor."""
+    """Point of a track, in metres north, east and down from the site's anchor."""
 
     t_ms: int
     north_m: float
@@ -57,7 +57,7 @@ def unit_track(
 async def incident_tracks(
     incident_id: Id, station: CurrentStation, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
-    """The tracks of every unit that moved while it was in the open incident."""
+    """Tracks of all units that moved while they were in the open incident."""
     async with station.export_lock:
         return await run_in_threadpool(_incident_tracks, incident_id, station, every_s)
 
@@ -88,5 +88,5 @@ def _point(point: TrackSample) -> TrackPointAnswer:
 
 
 def _json(tracks: Track | list[Track]) -> Response:
-    """Straight to bytes: an hour of a hundred units is 360,000 points."""
+    """Encode tracks directly to bytes: an hour of a hundred units has 360,000 points."""
     return Response(msgspec.json.encode(tracks), media_type="application/json")

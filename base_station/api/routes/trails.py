@@ -52,7 +52,7 @@ def incident_trails(
     kind: TrailKind = TrailKind.FUSED,
     every_s: EverySeconds = 1,
 ) -> Response:
-    """The trails of every unit that moved.  The smoothed ones of an open incident are as of now."""
+    """Trails of all units that moved.  Smoothed trails of an open incident are those known now."""
     incident = incident_or_404(station, incident_id)
     made_ns, tracks = trails_of(station, incident, kind)
     body = Trails(
@@ -68,7 +68,7 @@ def incident_trails(
 
 
 def _encoded(trail: TrailAnswer) -> TrailAnswer:
-    """Encoded at once: the points of all units are large."""
+    """Encode trails as they are read, as the points of all units together are large."""
     return cast("TrailAnswer", msgspec.Raw(msgspec.json.encode(trail)))
 
 
@@ -81,7 +81,7 @@ def hindsight_of(station: Services) -> PostProcessor:
 def trails_of(
     station: Services, incident: models.IncidentRow, kind: TrailKind
 ) -> tuple[int, Tracks]:
-    """Time at which they were worked out, and the trails by unit."""
+    """Time at which the trails were computed, and the trails by unit."""
     if kind is TrailKind.SMOOTHED:
         smoothed = hindsight_of(station).smoothed(incident)
         return smoothed.made_ns, smoothed.tracks
@@ -91,7 +91,7 @@ def trails_of(
 
 
 def _points(track: Sequence[TrackSample], every_s: int) -> tuple[Point, ...]:
-    """Takes the first point of every ``every_s`` seconds."""
+    """Keep the first point of every ``every_s`` seconds."""
     points: list[Point] = []
     last_s = -1
     for sample in track:

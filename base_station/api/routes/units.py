@@ -63,7 +63,9 @@ class Label(Form):
 
 
 class UnitStartForm(Form):
-    """Place where the unit's own frame began, in the incident frame, as well as it is known."""
+    """Place at which the unit's own frame began, in the incident frame, with the standard deviation
+    of what is known of it.
+    """
 
     north_m: Metres
     east_m: Metres
@@ -86,7 +88,9 @@ def list_units(station: CurrentStation, _: Viewer) -> list[UnitAnswer]:
 
 @router.post("/units", status_code=201)
 def register_unit(new: NewUnit, station: Station, perform: Perform) -> UnitAnswer:
-    """From now on messages of this unit are believed; registering again changes its label."""
+    """Register a unit, whose messages are used from now on.  Registering it again changes its
+    label.
+    """
     validate_unit_id(new.unit_id)
     perform(RegisterUnit(new.unit_id, new.label))
     return _unit_as_decided(station, new.unit_id)
@@ -107,9 +111,9 @@ def set_start(unit_id: UnitId, start: UnitStartForm, station: Station, perform: 
 
 @router.put("/reference-barometer", status_code=204)
 def set_reference(reference: Reference, station: Station, perform: Perform) -> None:
-    """Unit whose barometer stays where it is and measures the weather for all; empty: none.
-    If its start position is set, its satellite receiver measures the common error of all receivers
-    of the site.
+    """Set the reference unit, which stays in one place: its barometer measures the weather for all
+    units.  If its start position is set, its satellite receiver also measures the common error of
+    all receivers of the site.  An empty id removes it.
     """
     with _not_found_if_unknown(station, reference.unit_id):
         named = site_incident_id(station, reference.incident_id)
@@ -135,8 +139,8 @@ def _registered_or_404(station: Services, unit_id: str) -> UnitView:
 
 
 def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:
-    """As in the live picture.  The unit's description is no part of that, and comes from the
-    database, as far as that has it now.
+    """The unit as the live picture has it.  The live picture does not contain the unit's
+    description; that is taken from the database, in its present state.
     """
     view = _registered_or_404(station, unit_id)
     stored = None

@@ -86,7 +86,7 @@ def remove_user(username: Username, station: Logins, who: Administrator) -> None
 
 @router.delete("/users/{username}/sessions", status_code=204)
 def end_sessions(username: Username, station: Logins, who: Administrator) -> None:
-    """End all sessions of this user, who has to log in again; tokens stay."""
+    """End all sessions of a user, who has to log in again; API tokens stay valid."""
     station.accounts.end_sessions(username)
     station.records.audit(who.username, "EndedSessions", username)
 
@@ -100,7 +100,9 @@ def change_own_password(
     request: Request,
     response: Response,
 ) -> None:
-    """Ends all sessions of the user, this one too; who had to change it goes on with another."""
+    """Change one's own password, which ends all sessions of the user.  A user who had to change it
+    gets a new session.
+    """
     throttle.check_account(who.username)
     if change.new_password == change.old_password:
         raise Problem(
