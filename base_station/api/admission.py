@@ -48,7 +48,7 @@ class AdmissionMiddleware:
             await self._app(scope, receive, send)
 
     async def _log_in(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuses before the body is read."""
+        """Refuse a login before its body is read."""
         address = scope["client"][0] if scope.get("client") else ""
         if not self._throttle.allows(address):
             refusal = too_many_attempts()
@@ -62,7 +62,9 @@ class AdmissionMiddleware:
         await answer(scope, receive, send)
 
     async def _read_in_turn(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Releases its place when the response begins: a slow reader delays no other request."""
+        """Run a large read in its turn.  Its place is free again when the response begins: a slow
+        reader delays no other request.
+        """
         await self._reading.acquire()
         held = True
 
@@ -83,8 +85,8 @@ class AdmissionMiddleware:
 
 
 class LoginQueue:
-    """Log-ins in the order of coming, in a thread of their own; those of names that have logged in
-    from there before wait for no others.
+    """Logins in the order in which they came, in a thread of their own.  A user name that has
+    logged in from the same network before does not wait for other logins.
     """
 
     def __init__(self) -> None:
@@ -92,7 +94,7 @@ class LoginQueue:
         self._unknown = _BoundedWorker("log-in", _MAX_WAITING_UNKNOWN)
 
     async def run(self, work: Callable[[], T], *, is_known: bool) -> T:
-        """Problem 503 where too many wait.  In the loop's thread."""
+        """Run a login in its turn, from the event loop.  Problem 503 if too many wait."""
         return await (self._known if is_known else self._unknown).run(work)
 
     @property
@@ -105,7 +107,7 @@ class LoginQueue:
 
 
 class _BoundedWorker:
-    """Worker thread with a bound on its waiting requests."""
+    """Worker thread with a limited number of waiting requests."""
 
     def __init__(self, name: str, max_pending: int) -> None:
         self.thread = ThreadPoolExecutor(1, name)

@@ -34,7 +34,9 @@ class AlarmWithLife(AlarmView, frozen=True, kw_only=True):
 
 
 def with_life(alarm: AlarmRow, changes: Iterable[AlarmTransition], roster: Roster) -> AlarmWithLife:
-    """An alarm of the tables with its changes, by time; names are put in."""
+    """Answer about an alarm of the tables, with its changes in time order and with the names of
+    people.
+    """
     view = alarm_view(alarm, roster.known)
     entries = tuple(
         AlarmHistoryEntry(

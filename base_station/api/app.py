@@ -37,7 +37,9 @@ log = logging.getLogger(__name__)
 
 
 def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop], None]) -> FastAPI:
-    """``started`` is called once in the event loop, when the API begins."""
+    """Application with all routes of the station.  ``started`` is called once in the event loop,
+    when the API begins.
+    """
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -75,8 +77,8 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
 
 
 def add_request_handling(app: FastAPI, services: LoginServices) -> LoginQueue:
-    """Add the middleware of every route, of a station and of a department.  Gives the queue of
-    log-ins, to be closed at the end.
+    """Add the middleware that all routes need, those of a station and of a department.  Returns the
+    queue of logins, which the caller closes at the end.
     """
     app.state.services = services
     throttle = app.state.login_throttle = LoginThrottle()

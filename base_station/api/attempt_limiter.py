@@ -10,7 +10,9 @@ from collections.abc import Callable, Hashable
 
 
 class AttemptLimiter:
-    """Limits the attempts of the last ``within_s`` under each key; older ones are not kept."""
+    """Limit of attempts within the last ``within_s`` seconds, for each key; older attempts are
+    forgotten.
+    """
 
     def __init__(
         self, max_attempts: int, within_s: float, monotonic_s: Callable[[], float] = time.monotonic
@@ -25,7 +27,7 @@ class AttemptLimiter:
         return len(self._attempts_s)
 
     def allows(self, key: Hashable) -> bool:
-        """True while there were fewer than ``max_attempts``."""
+        """True if the key had fewer than ``max_attempts`` attempts."""
         attempts_s = self._attempts_s.get(key)
         return (
             attempts_s is None

@@ -37,7 +37,9 @@ _token_scheme = HTTPBearer(auto_error=False)
 
 
 def principal_of(connection: HTTPConnection, services: LoginServices) -> Principal | None:
-    """Gives the principal of the cookie or the token; from then on its network is known."""
+    """Return the principal of the cookie or the token of a request, and remember its network as
+    known.
+    """
     token = _token_of(connection)
     if token is not None:
         principal = services.accounts.of_token(token)
@@ -50,15 +52,16 @@ def principal_of(connection: HTTPConnection, services: LoginServices) -> Princip
 
 
 def _token_of(connection: HTTPConnection) -> str | None:
-    """Gives the API token of a request; a cookie beside it is ignored."""
+    """Return the API token of a request; a cookie beside it is ignored."""
     kind, _, secret = connection.headers.get("authorization", "").partition(" ")
     return secret.strip() if kind.lower() == "bearer" else None
 
 
 def is_own_origin(connection: HTTPConnection) -> bool:
-    """True where the page that asks was served by this station, or no origin is named.
+    """True if the page that sends the request was served by this station, or if no origin is given.
 
-    Over TLS a page that was not is another one, whatever its host.
+    A page that was served without TLS is of another origin than a station with TLS, even with the
+    same host.
     """
     origin = connection.headers.get("origin")
     if origin is None:
@@ -71,9 +74,9 @@ def is_own_origin(connection: HTTPConnection) -> bool:
 
 
 def check_origin(connection: HTTPConnection) -> None:
-    """Dependency of every route: nothing is changed at the wish of another site.
+    """Dependency of every route: a page of another origin cannot change anything.
 
-    WebSockets check theirs in the handshake.
+    WebSockets check their origin in the handshake.
     """
     if connection.scope.get("method", "GET") in _SAFE_METHODS:
         return
@@ -93,8 +96,8 @@ def check_origin(connection: HTTPConnection) -> None:
 
 
 def check_leads(connection: HTTPConnection) -> None:
-    """Dependency of every route: of two stations, things are changed at the one that leads, and at
-    one that only replays nothing is.
+    """Dependency of every route: of two stations only the leading one accepts changes, and a
+    station that only replays accepts none.
     """
     services = login_services_of(connection)
     if connection.scope.get("method", "GET") in _SAFE_METHODS:
@@ -139,7 +142,9 @@ def _authenticated(
 
 
 def must_change_password(principal: Principal, services: LoginServices) -> bool:
-    """True for a generated password; a station that only replays cannot keep another."""
+    """True for a generated password.  False at a station that only replays, as it cannot store
+    another.
+    """
     return principal.must_change_password and not services.is_replay_only
 
 
@@ -163,7 +168,7 @@ Administrator = Annotated[Principal, Depends(_administrator)]
 
 
 def require_role(principal: Principal, role: Role) -> Principal:
-    """Gives the principal, who has this role or a higher one.  Problem 403."""
+    """Return the principal if it has this role or a higher one.  Problem 403."""
     if principal.role < role:
         raise Problem(
             403,
@@ -179,7 +184,7 @@ def require_role(principal: Principal, role: Role) -> Principal:
 
 
 class Scope(StrEnum):
-    """Parts of the API that a token can be for: the tags of the routers."""
+    """Part of the API for which a token can be valid: the tag of a router."""
 
     ACCOUNTABILITY = "accountability"
     ALARMS = "alarms"
@@ -208,5 +213,5 @@ class Scope(StrEnum):
 
 
 def scope_covers(principal: Principal, tags: Collection[str]) -> bool:
-    """True where a token is for this part of the API; its own user may always be asked."""
+    """True if the token is valid for this part of the API; any token may ask for its own user."""
     return not principal.scopes or "login" in tags or not principal.scopes.isdisjoint(tags)

@@ -27,13 +27,13 @@ def ranged_response(content: bytes, media_type: str, request: Request) -> Respon
 
 
 def begins_at_start(request: Request) -> bool:
-    """True where a client asks for a content from its beginning, and not for later parts."""
+    """True if a client asks for a content from its first byte."""
     asked = _RANGE.fullmatch(request.headers.get("Range", "").strip())
     return asked is None or asked[1] == "0"
 
 
 def _bounds(first: str, last: str, length: int) -> tuple[int, int]:
-    """Begin, and the end that is left out; empty where there is no such part."""
+    """First byte and the byte after the last one; empty if the content has no such range."""
     if first:
         return int(first), min(int(last) + 1, length) if last else length
     return (max(length - int(last), 0), length) if last else (length, length)

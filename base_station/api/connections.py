@@ -19,11 +19,12 @@ MAX_PER_ANONYMOUS_NETWORK = (
 
 
 class ConnectionLimitedSocket(socket.socket):
-    """A listening socket.  Connections are counted from when they come in: over TLS it takes a
-    while until one can ask anything, and all that while it takes memory.
+    """Listening socket that counts connections from the moment they are accepted: over TLS it takes
+    a while until a client can send a request, and a connection needs memory all the time.
 
-    Where all connections of anonymous networks are in use, the network that has most loses its
-    oldest: a browser gets in, however many connections are held without a request.
+    When all connections for anonymous networks are in use, the oldest of the network with the most
+    is closed.  So a browser can always connect, however many connections are held without a
+    request.
     """
 
     def __init__(
@@ -91,7 +92,7 @@ class KnownNetworks:
         self._networks: dict[str, None] = {}  # in the order of requests, the newest last
 
     def add(self, address: str) -> None:
-        """Adds the network of a request of a user that is logged in."""
+        """Add the network from which a logged-in user has sent a request."""
         network = network_of(address)
         self._networks.pop(network, None)
         self._networks[network] = None

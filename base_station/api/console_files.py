@@ -44,8 +44,8 @@ class _Assets(StaticFiles):
 
 
 def serve_console(app: FastAPI, name: str = "index.html") -> None:
-    """Add ``/``, which is the page ``name``, and the files below it; to be called after every other
-    route was added.
+    """Add ``/``, which is the page ``name``, and the files below it; to be called after all other
+    routes were added.
     """
     with as_file(files("base_station") / "console" / "dist") as dist:
         page = Path(dist) / name
@@ -60,7 +60,7 @@ def serve_console(app: FastAPI, name: str = "index.html") -> None:
 
 
 def serve_built(app: FastAPI, page: Path) -> None:
-    """The page with all that lies beside it."""
+    """Add a built page with the files beside it."""
     dist = page.parent
 
     @app.get("/", include_in_schema=False)

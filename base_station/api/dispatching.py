@@ -21,7 +21,7 @@ Outcome = Literal["offered", "updated", "unchanged", "outdated", "opened"]
 
 
 def take_report(station: Services, perform: IdempotentRequest, report: NoteDispatch) -> Outcome:
-    """Log a report that has something new, and open an incident if the settings ask for it."""
+    """Log a report that has new content, and open an incident if the settings ask for it."""
     known = known_dispatch(station.picture(), report.number)
     outcome: Outcome = "offered" if known is None else "updated"
     if known is not None:
@@ -35,7 +35,7 @@ def take_report(station: Services, perform: IdempotentRequest, report: NoteDispa
 
 
 def known_dispatch(picture: Snapshot, number: str) -> DispatchView | None:
-    """The newest report that the station has shown under this number."""
+    """Newest report with this number that the station has shown."""
     incident = picture.incident
     of_incident = () if incident is None or incident.dispatch is None else (incident.dispatch,)
     return next((one for one in (*of_incident, *picture.dispatches) if one.number == number), None)
@@ -53,14 +53,16 @@ def open_incident_of(picture: Snapshot, number: str) -> IncidentView | None:
 def matched_units(
     station: Services, picture: Snapshot, call_signs: tuple[str, ...]
 ) -> tuple[MatchedCallSign, ...]:
-    """Call signs with the crews of the roster, and the units on the screen, of the same name."""
+    """Call signs with the crews of the roster, and the units of the live picture, that have the
+    same name.
+    """
     crews = {person.crew for person in station.roster.people() if person.crew}
     units = [KnownUnit(unit.unit_id, unit.label) for unit in picture.units if unit.registered]
     return CallSigns(station.dispatch.units).matched(call_signs, sorted(crews), units)
 
 
 def _opens_incident(station: Services, by: str, report: NoteDispatch) -> bool:
-    """Open one from a dispatch that is offered, unless one is open; True where it was opened."""
+    """Open an incident from an offered dispatch, unless one is open.  True if it was opened."""
     if station.dispatch.open is not Opening.AUTOMATICALLY or report.has_ended:
         return False
     picture = station.picture()
@@ -84,7 +86,7 @@ def _opens_incident(station: Services, by: str, report: NoteDispatch) -> bool:
 
 
 def _content(dispatch: DispatchView) -> DispatchView:
-    """Without the fields that differ between two reports of the same content."""
+    """The report without the fields that differ between two reports of the same content."""
     return msgspec.structs.replace(
         dispatch,
         updated_ms=None,

@@ -19,12 +19,12 @@ _PROBLEM = {"$ref": f"#/components/schemas/{ProblemDocument.__name__}"}
 
 
 def operation_id(route: APIRoute) -> str:
-    """A client's name for a route: that of the function behind it."""
+    """Name of a route in generated clients: that of its function."""
     return route.name
 
 
 def file_response(*media_types: str) -> dict[int | str, dict[str, Any]]:
-    """For ``responses`` of a route that answers with a file."""
+    """Value of ``responses`` for a route that answers with a file."""
     return {200: {"content": {media_type: {"schema": _FILE} for media_type in media_types}}}
 
 
@@ -64,7 +64,7 @@ def _complete(document: dict[str, Any]) -> None:
 
 
 def _add_description(json_schema: dict[str, Any], description: str | None) -> None:
-    """Keeps a description that the code itself gives."""
+    """Add a description, unless the code itself gives one."""
     if description is not None:
         json_schema.setdefault("description", description)
 
@@ -75,7 +75,9 @@ def _operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _problem_responses() -> dict[str, Any]:
-    """Every route's: with the media type that is sent, so that a client reads them."""
+    """Problem responses of every route, with the media type that is sent, so that clients decode
+    them.
+    """
     return {
         str(status): {
             "description": HTTPStatus(status).phrase,

@@ -39,13 +39,15 @@ _FAULTS = {  # by pydantic's names of errors
 
 
 def error_sentence(error: Mapping[str, Any]) -> str:
-    """``error``: one of pydantic's, with its place, its kind and the bounds that were not kept."""
+    """Sentence about an error of pydantic: ``error`` has its place, its kind and the limits that
+    were exceeded.
+    """
     fault, field = _fault(error), _place(error["loc"])
     return coded("field-fault", "{field} {fault}", field=field, fault=fault) if field else fault
 
 
 def joined_sentences(sentences: Iterable[str]) -> str:
-    """One sentence or more as one, which has the codes of all."""
+    """Join sentences into one, which has the codes of all."""
     return reduce(_joined, sentences)
 
 
@@ -110,5 +112,7 @@ def _limit_fault(kind: str, bounds: Mapping[str, Any]) -> str:
 
 
 def _place(location: Sequence[int | str]) -> str:
-    """Names the place in body, query or path; an alternative bears the name of a field of its."""
+    """Name of the field in body, query or path; an alternative is called by the name of one of its
+    fields.
+    """
     return ".".join(str(part) for part, _ in groupby(location[1:]))

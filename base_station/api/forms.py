@@ -67,7 +67,7 @@ Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0)]
 
 
 class Form(BaseModel):
-    """Base of every body that is read."""
+    """Base of all request bodies."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 

@@ -50,7 +50,7 @@ class Guide(msgspec.Struct):
 
 
 class Guidance:
-    """Rescuers who are guided now; any thread may call it."""
+    """Rescuers who are guided now.  Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -61,7 +61,9 @@ class Guidance:
             return list(self._guides.values())
 
     def begin(self, station: Services, by: str, unit_id: str, rescuer_id: str, send: Send) -> Guide:
-        """Send the first piece; Problem where a unit is not known or has no position."""
+        """Begin a guidance and send its first piece.  Problem if a unit is not known or has no
+        position.
+        """
         route = find_routes(station, unit_id, rescuer_id)[0]
         snapshot = station.picture()
         has_alarm = bool(_open_alarms(snapshot, unit_id))
@@ -82,7 +84,7 @@ class Guidance:
         return guide
 
     def end(self, station: Services, rescuer_id: str, send: Send) -> bool:
-        """Send the end of the guidance to the rescuer's unit; False: there is no guidance."""
+        """Notify the rescuer's unit that the guidance has ended.  False if there was none."""
         with self._lock:
             guide = self._guides.pop(rescuer_id, None)
         if guide is None:
@@ -92,7 +94,9 @@ class Guidance:
         return True
 
     def step(self, station: Services) -> None:
-        """Look at each rescuer once: send changes that two looks have found, drop ended ones."""
+        """Review all guidances once: send a new manoeuvre that two reviews in a row have found, and
+        remove those that are no longer needed.
+        """
         guides = self.guides()
         if not guides:
             return
@@ -118,7 +122,9 @@ Guiding = Annotated[Guidance, Depends(guidance_of)]
 
 
 def _advance(station: Services, snapshot: Snapshot, guide: Guide) -> None:
-    """Positions waver: another manoeuvre is sent once two looks have found it."""
+    """The guide after a review.  As positions fluctuate, a new manoeuvre is sent only once two
+    reviews in a row have found it.
+    """
     route = find_routes(station, guide.unit_id, guide.rescuer_id)[0]
     manoeuvre = _manoeuvre(route)
     if manoeuvre == guide.manoeuvre:
@@ -155,14 +161,14 @@ def _message(unit_id: str, text: str) -> SendCommand:
 
 
 def _manoeuvre(route: RouteAnswer) -> object:
-    """Manoeuvre at the end of this leg, and the number of legs left."""
+    """Manoeuvre at the end of the present leg, and the number of legs left."""
     following = [(leg.turn, leg.floors) for leg in route.legs[1:2]]
     climbed = [leg.floors for leg in route.legs[:1]]
     return route.known, len(route.legs), climbed, following
 
 
 def _is_still_needed(station: Services, snapshot: Snapshot, guide: Guide) -> bool:
-    """Not so once the alarms are resolved, the incident is closed or another station leads."""
+    """False once the alarms are resolved, the incident is closed or another station leads."""
     if station.ha_status is not None and station.ha_status.refusal() is not None:
         return False
     if _incident_id(snapshot) != guide.incident_id:

@@ -11,9 +11,9 @@ class HaStatus(Protocol):
     def view(self) -> StandbyView: ...
 
     def refusal(self) -> str | None:
-        """Reason why nothing can be changed here, as a sentence; None: this station leads."""
+        """Sentence with the reason why nothing can be changed here; None if this station leads."""
         ...
 
     def take_over(self) -> None:
-        """Soon."""
+        """Ask this station to lead; it does so shortly after."""
         ...

@@ -6,7 +6,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
 class HeadRequestMiddleware:
-    """ASGI middleware: has the routes answer as to GET, and drops the body."""
+    """ASGI middleware: passes HEAD on to the routes as GET, and drops the body of the response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

@@ -26,18 +26,22 @@ _HEADERS = {
 
 
 def content_policy(other_console: str) -> str:
-    """Content security policy: the console loads from, and asks, this station and the other one."""
+    """Content security policy: the console loads from, and connects to, only this station and the
+    other one.
+    """
     known = _ORIGIN.fullmatch(other_console) is not None
     return _CONTENT_POLICY.format(other=f" {other_console}" if known else "")
 
 
 class SecurityHeadersMiddleware:
-    """ASGI middleware."""
+    """ASGI middleware that adds the headers."""
 
     def __init__(
         self, app: ASGIApp, secure: bool, other_console: Callable[[], str] = lambda: ""
     ) -> None:
-        """``other_console``: the other station's, which may be asked whether it leads."""
+        """``other_console``: origin of the other station's console, which this one asks whether it
+        leads.
+        """
         self._app = app
         self._other_console = other_console
         self._headers = dict(_HEADERS)

@@ -39,7 +39,7 @@ class Hub:
         self.position_ages = PositionAges()
 
     def connect(self, loop: asyncio.AbstractEventLoop, source: LiveSource) -> None:
-        """Connects the hub with its source; clients may join before."""
+        """Connect the hub with the source of its messages; clients may join before that."""
         self._loop, self._source = loop, source
         if self._clients:
             self.request_snapshot()
@@ -47,14 +47,18 @@ class Hub:
     # ---- from any thread but the source's
 
     def snapshot(self) -> Future[Snapshot]:
-        """The picture as it is now, without trails; never done where the source has stopped."""
+        """Future of the present picture without trails; it is never done if the source has
+        stopped.
+        """
         future: Future[Snapshot] = Future()
         if self._source is not None:
             self._source.request_snapshot(lambda snapshot, _: future.set_result(snapshot))
         return future
 
     def picture(self) -> Future[tuple[Snapshot, Trails]]:
-        """The same with the trails of all units."""
+        """Future of the present picture with the trails of all units; it is never done if the
+        source has stopped.
+        """
         future: Future[tuple[Snapshot, Trails]] = Future()
         if self._source is not None:
             self._source.request_snapshot(lambda *picture: future.set_result(picture))
@@ -78,14 +82,14 @@ class Hub:
             self.broadcast_reset(self._encoder.encode(snapshot), trails)
 
     def broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None:
-        """A delta that is encoded already, as ``Delta`` and as ``FieldDelta``; ``redrawn``: the
-        units whose whole trail it has.
+        """Send a delta that is already encoded, as ``Delta`` and as ``FieldDelta``. ``redrawn``:
+        units whose whole trail it contains.
         """
         if self._has_plain or self._has_paced:
             self._in_loop(self._broadcast_delta, whole, changes, redrawn)
 
     def broadcast_reset(self, message: bytes, trails: Trails) -> None:
-        """A snapshot that is encoded already, for everybody."""
+        """Send an already encoded snapshot to all clients."""
         if self._has_plain or self._has_paced:
             self._in_loop(self._broadcast_snapshot, message, trails, False)
 
@@ -109,13 +113,13 @@ class Hub:
         return len(self._clients)
 
     def join(self) -> Client:
-        """One that gets whole units.  Raises StoreError where there is no picture now."""
+        """Add a client that gets whole units.  Raises StoreError if there is no picture now."""
         client = Client(self.request_snapshot)
         self._add(client)
         return client
 
     def join_paced(self) -> PacedClient:
-        """One that gets changed fields.  Raises StoreError where there is no picture now."""
+        """Add a client that gets changed fields.  Raises StoreError if there is no picture now."""
         client = PacedClient(self.request_snapshot)
         self._add(client)
         return client
@@ -138,13 +142,15 @@ class Hub:
         self._has_plain = any(not isinstance(one, PacedClient) for one in self._clients)
 
     def request_snapshot(self) -> None:
-        """Many clients that ask at once share one snapshot."""
+        """Ask the source for a snapshot; clients that ask at the same time share one."""
         if self._source is not None and not self._requested:
             self._source.request_snapshot(self._deliver)  # if that fails, the next one asks again
             self._requested = True
 
     def _broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None:
-        """One that joined since this was encoded waits for its snapshot."""
+        """Queue a delta for all clients; one that joined after it was encoded waits for its
+        snapshot.
+        """
         for client in self._clients:
             client.enqueue_delta(changes if isinstance(client, PacedClient) else whole, redrawn)
 

@@ -1,4 +1,4 @@
-"""One console's place in the hub: the messages that wait for it."""
+"""Queue of messages for one console."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_UNSHOWN_BYTES = 1 << 18  # trails go out while no more than that is not show
 
 
 class Client:
-    """Gets every delta in order; ``ask`` asks the source for a snapshot."""
+    """Console that gets every delta in order.  ``ask`` requests a snapshot from the source."""
 
     def __init__(self, ask: Callable[[], None]) -> None:
         self._ask = ask
@@ -27,7 +27,7 @@ class Client:
         self.lapses = 0  # how often it was too slow
 
     async def next_message(self) -> bytes:
-        """The next message in order, waiting for it."""
+        """Wait for the next message in order, and return it."""
         while (message := self._take()) is None:
             self._is_changed.clear()
             if self._behind and self._is_ready:
@@ -36,7 +36,7 @@ class Client:
         return message
 
     def request_snapshot(self) -> None:
-        """Drops the queue; the next message will be a snapshot."""
+        """Drop the queue; the next message will be a snapshot."""
         self._clear()
         self._behind = False
         if not self._waiting:
@@ -44,7 +44,7 @@ class Client:
             self._ask()
 
     def enqueue_delta(self, message: bytes, redrawn: Iterable[str]) -> None:
-        """``redrawn``: the units whose whole trail it has."""
+        """Queue a delta.  ``redrawn``: units whose whole trail it contains."""
         if self._waiting or self._behind:
             return
         if len(self._queue) >= MAX_QUEUED:
@@ -68,11 +68,11 @@ class Client:
 
     @property
     def _is_ready(self) -> bool:
-        """True where a snapshot would be sent at once."""
+        """True if a snapshot would be sent at once."""
         return True
 
     def _take(self) -> bytes | None:
-        """Messages that are to be sent now."""
+        """Remove and return the messages that are sent next."""
         return self._queue.popleft() if self._queue else self._take_trail()
 
     def _take_trail(self) -> bytes | None:
@@ -94,8 +94,8 @@ class _Sent(NamedTuple):
 
 
 class PacedClient(Client):
-    """Gets ``FieldDelta``, and no more than it can show: changes meanwhile are merged, so that a
-    slow console shows the newest state, and not all former ones.
+    """Console that gets ``FieldDelta``, at the rate at which it shows them.  Changes that come
+    meanwhile are merged, so that a slow console shows the newest state and skips earlier ones.
     """
 
     def __init__(self, ask: Callable[[], None]) -> None:
@@ -106,7 +106,7 @@ class PacedClient(Client):
         self._begins_with_snapshot = False  # the queue
 
     def note_shown(self, count: int) -> None:
-        """It has shown so many messages of this connection."""
+        """Note how many messages of this connection the console has shown."""
         while self._unshown and self._unshown[0].number <= count:
             self._unshown.popleft()
         self._is_changed.set()
@@ -127,7 +127,9 @@ class PacedClient(Client):
         return sum(one.is_picture for one in self._unshown) < MAX_UNSHOWN
 
     def _take(self) -> bytes | None:
-        """Pictures and trails by turns: a slow console gets both."""
+        """Remove and return what is sent next: pictures and trails in turn, so that a slow console
+        gets both.
+        """
         has_room = sum(one.size for one in self._unshown) < MAX_UNSHOWN_BYTES
         is_trail = bool(self._trails) and has_room and (self._is_trail_next or not self._queue)
         if is_trail and not self._begins_with_snapshot:

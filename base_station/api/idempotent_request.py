@@ -1,4 +1,4 @@
-"""Requests that are carried out once, however often they are sent."""
+"""Requests that are carried out once, however often they are received."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _Key = Annotated[
 
 
 class IdempotentRequest:
-    """One request of one person, for one action or one row of a table."""
+    """Request of one principal for one action, or for one row of a table."""
 
     def __init__(self, station: Services, by: str, key: str, content: bytes) -> None:
         self.by = by
@@ -36,7 +36,7 @@ class IdempotentRequest:
         self._content = content
 
     def __call__(self, action: Action) -> ActionResult:
-        """Gives the result, of now or of the first time (``Services.perform``)."""
+        """Carry out the action, or return the result of the first time (``Services.perform``)."""
         if not self._key:
             return self._station.perform(self.by, action)
         action_id = idempotent_action_id(self.by, self._key, self._content, uuid.uuid4().hex)
@@ -44,11 +44,13 @@ class IdempotentRequest:
 
     @property
     def row_id(self) -> str:
-        """For the one row that the request adds to a table; empty: any will do."""
+        """Id of the row that the request adds to a table; empty if any id will do."""
         return row_id(self.by, self._key, self._content) if self._key else ""
 
     def require_row(self, found_id: str) -> None:
-        """``found_id``: of the row that was added with this key, now or before."""
+        """Check that the row is that of this request.  ``found_id``: id of the row that was added
+        with this key, now or before.
+        """
         if self._key and found_id != self.row_id:
             raise idempotency_key_reused()
 

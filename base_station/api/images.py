@@ -36,7 +36,7 @@ _EXIF_TRANSPOSITIONS: dict[
 
 
 def normalize_photo(upload: bytes) -> tuple[bytes, str]:
-    """A square JPEG and its hash.  Raises ConfigError with the fault of the upload."""
+    """Return a square JPEG and its hash.  Raises ConfigError with the fault of the upload."""
     if len(upload) > MAX_BYTES:
         raise ConfigError(
             coded(
@@ -61,8 +61,9 @@ def normalize_photo(upload: bytes) -> tuple[bytes, str]:
 
 
 def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
-    """A WebP no larger than ``MAP_SIDE_PX``, its hash, its width and height, and by how much it is
-    smaller than the upload.  Raises ConfigError with the fault of the upload.
+    """Return a WebP no larger than ``MAP_SIDE_PX``, its hash, its width and height in pixels, and
+    the factor by which it is smaller than the upload.  Raises ConfigError with the fault of the
+    upload.
     """
     if len(upload) > MAX_MAP_BYTES:
         raise ConfigError(
@@ -106,7 +107,9 @@ def _square(upload: bytes) -> Image.Image:
 
 
 def _in_colours(opened: Image.Image) -> Image.Image:
-    """Decoded; ``convert`` would copy one that is in colours already, of 96 MB perhaps."""
+    """Decode a picture to RGB. One that is RGB already is not converted, as ``convert`` would copy
+    it, which may be 96 MB.
+    """
     if opened.mode != "RGB":
         return opened.convert("RGB")
     opened.load()  # while the upload is open

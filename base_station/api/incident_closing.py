@@ -1,4 +1,4 @@
-"""Open alarms of units and people inside, over which an incident would be closed."""
+"""Open alarms of units and people inside, despite which an incident would be closed."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ MAX_NAMED = 20  # of each kind, in the sentence; for programs all ids stand besi
 
 
 class ClosingObstacles(msgspec.Struct, frozen=True):
-    """State at the moment at which an incident is closed."""
+    """Open alarms and people inside at the moment at which an incident is closed."""
 
     alarms: tuple[AlarmView, ...]
     inside: tuple[UnitView, ...]
 
     def require_known(self, alarm_ids: Collection[str], unit_ids: Collection[str]) -> None:
-        """Problem 409 with their names where the request to close the incident does not name them
-        all; with its ``despite_...`` members the request can be repeated.
+        """Check that the request to close the incident names all of them; else Problem 409 with
+        their names.  With its ``despite_...`` members the request can be repeated.
         """
         alarms = [one for one in self.alarms if one.alarm_id not in alarm_ids]
         inside = [one for one in self.inside if one.unit_id not in unit_ids]
@@ -42,8 +42,8 @@ class ClosingObstacles(msgspec.Struct, frozen=True):
 
 
 def closing_obstacles(picture: Snapshot, incident_id: str) -> ClosingObstacles:
-    """The alarms and people inside among an incident's members; alarms about the station itself do
-    not count.  A person who was inside when the unit was switched off, or lost its link, counts as
+    """Open alarms of an incident's members, and members inside; alarms about the station itself do
+    not count.  A member who was inside when the unit was switched off, or lost its link, counts as
     inside.
     """
     members = [one for one in picture.units if one.incident_id == incident_id]
@@ -57,7 +57,7 @@ def closing_obstacles(picture: Snapshot, incident_id: str) -> ClosingObstacles:
 
 
 def _counted(what: str, texts: Sequence[str]) -> Measure:
-    """The number of them, with the first of them as a sentence; no sentence where there is none."""
+    """Sentence with their number and the first of them; none if there are none."""
     rest = len(texts) - MAX_NAMED
     joined = "; ".join([*texts[:MAX_NAMED], *([f"{rest} more"] if rest > 0 else [])])
     return Measure(len(texts), f"{what}: {joined}. " if texts else "")

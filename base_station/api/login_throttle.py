@@ -1,4 +1,6 @@
-"""Limits of how often passwords may be tried, counted before anything is done for a try."""
+"""Limits of how often passwords may be tried.  An attempt is counted before anything is done for
+it.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ _MAX_KNOWN = 1000
 
 
 class LoginThrottle:
-    """Thread-safe.
+    """Limits of login attempts by network and by user name.  Thread-safe.
 
     Attempts that are refused here are not counted: many attempts with one name do not lock out the
     other users of the network, which may be all consoles behind one router.  A user who has logged
@@ -40,8 +42,8 @@ class LoginThrottle:
         self._known: dict[tuple[str, str], None] = {}  # in the order of logins, the newest last
 
     def check(self, address: str, username: str) -> bool:
-        """Count a try; True where this name has logged in from there.  Problem 429 where there
-        were too many tries.
+        """Count an attempt.  True if this user name has logged in from there before.  Problem 429
+        if there were too many attempts.
         """
         network = network_of(address)
         one = network, username
@@ -60,24 +62,24 @@ class LoginThrottle:
         return is_known
 
     def check_account(self, username: str) -> None:
-        """Count an attempt of a logged-in user who has to give the password again."""
+        """Count an attempt of a logged-in user who has to enter the password again."""
         with self._lock:
             if not self._per_account_and_network.allows(("", username)):
                 raise too_many_attempts()
             self._per_account_and_network.record(("", username))
 
     def check_network(self, address: str) -> None:
-        """Problem 429 where there were too many tries; counts none."""
+        """Problem 429 if there were too many attempts from a network; counts none."""
         if not self.allows(address):
             raise too_many_attempts()
 
     def allows(self, address: str) -> bool:
-        """True where the place itself does not forbid a try."""
+        """True if the network itself may make another attempt."""
         with self._lock:
             return self._per_network.allows(network_of(address))
 
     def has_logged_in(self, address: str) -> bool:
-        """True once there was a login from there."""
+        """True if a user has logged in from the network."""
         network = network_of(address)
         with self._lock:
             return any(one == network for one, _ in self._known)

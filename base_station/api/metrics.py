@@ -1,6 +1,6 @@
 """Metrics of the station in Prometheus' text format.
 
-They hold no personal data: units stand under their ids, people not at all.
+They contain no personal data: units appear under their ids, people not at all.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _MS_PER_S = 1000.0
 
 
 class StationCollector(Collector):
-    """Metrics of one moment."""
+    """Collector of the metrics at one moment."""
 
     def __init__(self, picture: Snapshot, ages: PositionAges, *, consoles: int) -> None:
         self._picture = picture
@@ -61,7 +61,7 @@ class StationCollector(Collector):
 
 
 def exposition(picture: Snapshot, ages: PositionAges, *, consoles: int) -> bytes:
-    """Text of ``/metrics``, with those of the process itself."""
+    """Text of ``/metrics``, with the metrics of the process itself."""
     registry = CollectorRegistry(auto_describe=False)
     registry.register(StationCollector(picture, ages, consoles=consoles))
     ProcessCollector(registry=registry)

@@ -1,8 +1,9 @@
-"""People and crews from a CSV file as spreadsheets write it: every fault is named by its line.
+"""People and crews from a CSV file as spreadsheets write it.  Every fault is reported with its
+line.
 
-Read are UTF-8 (with a byte order mark or without), UTF-16 with a byte order mark, and
-Windows-1252 (of which Latin-1 is a part) for all else; comma, semicolon or tabulator.  The first
-line names the columns, in English, German or French.  Pure.
+Encodings: UTF-8 (with a byte order mark or without), UTF-16 with a byte order mark, and
+Windows-1252 (of which Latin-1 is a part) for all else.  Separators: comma, semicolon or tabulator.
+The first line names the columns, in English, German or French.  Pure.
 """
 
 from __future__ import annotations
@@ -55,9 +56,9 @@ class PeopleFile(NamedTuple):
 
 
 def read_people(content: bytes) -> PeopleFile:
-    """People of the file, and its faulty lines; no line is in both.
+    """Return the people of the file, and its faulty lines; no line is in both.
 
-    Raises UserError where the file as a whole is no such list.
+    Raises UserError if the file as a whole is no such list.
     """
     lines = list(io.StringIO(_text_of(content), newline=""))
     skipped = 1 if lines and lines[0].casefold().startswith(_HINT) else 0
@@ -105,7 +106,7 @@ def _separator(lines: list[str], skipped: int) -> str:
 
 
 def _numbered(rows: Iterator[list[str]], skipped: int) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not blank, with the line on which each begins."""
+    """Rows that are not blank, each with the number of its first line."""
     begins = 1 + skipped
     for row in rows:
         cells = [cell.strip() for cell in row]
@@ -155,7 +156,7 @@ def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
 
 
 def _columns(line: int, titles: list[str]) -> dict[str, int]:
-    """Number of each column that is known, by its meaning."""
+    """Index of each known column, by its meaning."""
     found: dict[str, int] = {}
     for number, title in enumerate(titles):
         column = _BY_TITLE.get(same_name(title))

@@ -12,8 +12,8 @@ _MS_PER_S = 1000.0
 
 
 class PositionAges:
-    """From the time to which a position belongs until the delta that carries it, on the station's
-    clock.  Observed by the engine's thread, read by any.
+    """Ages from the time of a position until the delta that contains it, by the station's clock.
+    The engine's thread observes; any thread may read.
     """
 
     def __init__(self) -> None:
@@ -34,5 +34,5 @@ class PositionAges:
                 self.sum_s += age_s
 
     def cumulative(self) -> tuple[int, ...]:
-        """Positions up to each of ``BOUNDS_S``, and all of them."""
+        """Number of positions with an age up to each of ``BOUNDS_S``, and of all."""
         return tuple(accumulate(self._counts))

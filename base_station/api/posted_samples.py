@@ -31,7 +31,9 @@ Vector = Annotated[list[Value], Field(min_length=3, max_length=3)]  # x, y, z
 
 
 class SampleBatch(Form):
-    """Columns of one length, a row a sample, in sensor axes; a missed value is null."""
+    """Columns of equal length with one row for each sample, in sensor axes; a missing value is
+    null.
+    """
 
     seq: Annotated[int, Field(ge=1, le=_MAX_SAFE_INTEGER)]
     t_ns: Annotated[
@@ -124,7 +126,7 @@ def _payloads(body: bytes) -> Iterator[bytes]:
 
 
 def _checked(unit_id: str, batches: Sequence[RawImu]) -> Sequence[RawImu]:
-    """Return the batches where a unit on the bus could have sent them."""
+    """Return the batches if a unit on the bus could have sent them."""
     if not 1 <= len(batches) <= MAX_BATCHES:
         raise ConfigError(f"send 1 to {MAX_BATCHES} batches in one request, not {len(batches)}")
     seq, boot_id = 0, batches[0].header.boot_id

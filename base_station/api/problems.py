@@ -39,7 +39,7 @@ _FAILED = coded("station-failed", "The station has failed; see its log for the e
 
 
 class ProblemDocument(BaseModel):
-    """RFC 9457."""
+    """Problem document of RFC 9457."""
 
     type: str
     title: str
@@ -50,8 +50,8 @@ class ProblemDocument(BaseModel):
 
 
 class Problem(HTTPException):
-    """Ends a request with a status and a sentence; ``members``: more of the document, for programs
-    (RFC 9457, 3.2).
+    """Exception that ends a request with a status and a sentence.  ``members``: further members of
+    the document, for programs (RFC 9457, 3.2).
     """
 
     def __init__(
@@ -90,9 +90,10 @@ def problem_response(
 
 
 def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None:
-    """Every error of a route becomes a problem document; others: ``UnhandledErrorMiddleware``.
+    """Answer every error of a route with a problem document; ``UnhandledErrorMiddleware`` answers
+    the others.
 
-    ``allowed_methods``: those of a path, as of the header ``Allow``; empty: there is no such path.
+    ``allowed_methods``: methods of a path for the header ``Allow``; empty if there is no such path.
     """
 
     @app.exception_handler(HTTPException)
@@ -123,9 +124,10 @@ def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None
 
 
 class UnhandledErrorMiddleware:
-    """ASGI middleware: an unhandled error is answered like every problem, and logged.
+    """ASGI middleware: logs an unhandled error and answers it with a problem document.
 
-    The framework's own handler stands outside of all other middleware, whose headers it misses.
+    The framework's own handler is outside of all other middleware, so its answer would lack their
+    headers.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -150,8 +152,8 @@ class UnhandledErrorMiddleware:
 
 
 class BodyTooLargeMiddleware:
-    """ASGI middleware: a body that is larger than a route takes is answered like every problem,
-    whatever the limiter below answers.
+    """ASGI middleware: answers a body that is larger than the route accepts with a problem
+    document, in place of the limiter's own answer.
     """
 
     def __init__(self, app: ASGIApp) -> None:

@@ -1,5 +1,5 @@
-"""Refused actions: whether their subject exists is looked up after the refusal, for a busy database
-must delay no action that is carried out.
+"""Status of refused actions.  Whether the subject exists is looked up only after the refusal, so
+that a busy database delays no action that is carried out.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ def not_found_if_unknown(
     shown: Callable[[Snapshot], bool],
     stored: Callable[[], bool],
 ) -> Iterator[None]:
-    """Problem 404 with ``detail`` in place of the refusal (UserError) of an action on something
-    that does not exist: neither ``shown`` in the picture nor ``stored`` in the tables.  Where the
-    database does not answer, the refusal stands.
+    """Problem 404 with ``detail`` in place of the refusal (UserError) of an action whose subject is
+    unknown: it is neither ``shown`` in the picture nor ``stored`` in the tables.  If the database
+    does not answer, the refusal stays as it is.
     """
     try:
         yield

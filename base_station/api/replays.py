@@ -1,4 +1,4 @@
-"""The replays that consoles have open; each has its own hub and its own pipeline."""
+"""Replays that consoles have open; each has its own hub and its own pipeline."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNWATCHED_S = 60.0  # a replay without a viewer ends
 
 
 class ReplayPlayer(LiveSource, Protocol):
-    """One replay.  Its methods may be called from any thread."""
+    """Player of one replay.  Thread-safe."""
 
     def play(self) -> None: ...
 
@@ -36,7 +36,7 @@ class ReplayPlayer(LiveSource, Protocol):
 
     @property
     def is_over(self) -> bool:
-        """It was closed, or broke off."""
+        """True once it was closed or has failed."""
         ...
 
     def close(self) -> None:
@@ -58,7 +58,7 @@ class OpenReplay:
 
 
 class Replays:
-    """Thread-safe."""
+    """Open replays.  Thread-safe."""
 
     def __init__(
         self, start: StartReplay, monotonic_s: Callable[[], float] = time.monotonic
@@ -76,7 +76,7 @@ class Replays:
         begun_by: str,
         persistent: Hub | None = None,
     ) -> OpenReplay:
-        """Start a replay; one that is given its hub lasts until it is closed."""
+        """Start a replay.  One for which a hub is given lasts until it is closed."""
         self._require_room()
         hub = persistent or Hub()
         player = self._start(incident, speed, hub)  # may wait for an archive; requests do not
@@ -124,7 +124,9 @@ class Replays:
         return closed is not None
 
     def close_unwatched(self) -> None:
-        """End those that broke off, or have had no viewer for a while; called often."""
+        """Close replays that have failed, or that no console has shown for a while; to be called
+        regularly.
+        """
         now_s = self._monotonic_s()
         for replay in self.all():
             if replay.player.is_over:

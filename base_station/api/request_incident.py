@@ -1,4 +1,4 @@
-"""The incident that a request is about: the one it names, or else the only open one."""
+"""Incident to which a request refers: the one that it names, or else the only open one."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from shared.coded_text import coded
 
 
 def open_incidents(station: Services) -> list[IncidentView]:
-    """Incidents that are open now, in the order of opening."""
+    """Incidents that are open now, in the order in which they were opened."""
     return [one for one in station.picture().incidents if one.closed_ms is None]
 
 
 def open_incident(station: Services, incident_id: str) -> IncidentView | None:
-    """An incident that is open now; None: there is no such one."""
+    """Incident with this id if it is open now; otherwise None."""
     opened = open_incidents(station)
     return next((one for one in opened if one.incident_id == incident_id), None)
 
@@ -34,8 +34,8 @@ def open_or_404(station: Services, incident_id: str) -> IncidentView:
 
 
 def site_incident_id(station: Services, incident_id: str | None) -> str:
-    """Id of the incident on whose site something is set; empty: on the station's own, as none is
-    open.  Problem 409 where several are open and none is named.
+    """Id of the incident on whose site something is set; empty, the station's own site, if none is
+    open.  Problem 409 if several are open and none is named.
     """
     if incident_id is not None:
         return open_or_404(station, incident_id).incident_id

@@ -32,7 +32,7 @@ class RoutePlace(Answer, frozen=True):
 
 
 class RouteLegAnswer(Answer, frozen=True):
-    """One leg of a route."""
+    """Leg of a route."""
 
     turn: Turn | None
     bearing_rad: float
@@ -41,7 +41,7 @@ class RouteLegAnswer(Answer, frozen=True):
 
 
 class RouteAnswer(Answer, frozen=True):
-    """Way of one rescuer to the member, or the straight line where no way is known."""
+    """Route of one rescuer to the member, or the straight line if no route is known."""
 
     unit_id: str
     known: bool
@@ -55,7 +55,7 @@ class RouteAnswer(Answer, frozen=True):
 
 
 def find_routes(station: Services, unit_id: str, rescuer_id: str | None) -> list[RouteAnswer]:
-    """Routes of the nearest rescuers, or of the one that is named, to a unit.
+    """Routes of the nearest rescuers, or of the named one, to a unit.
 
     Problem 404 for an unknown unit, 409 for one without a position and for the member itself.
     """
@@ -116,7 +116,7 @@ def _answers(
     known: Mapping[str, Route],
     may_go: Iterable[str],
 ) -> list[RouteAnswer]:
-    """Known routes first, then straight lines, both the nearest first."""
+    """Known routes first, then straight lines, each nearest first."""
     routes = [_route_answer(units[one], route) for one, route in known.items()]
     lines = [
         _line_answer(one, position, member)

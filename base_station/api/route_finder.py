@@ -1,7 +1,7 @@
 """Routes to a member, over the picture that consoles have.
 
 The graph of known ways is made in the thread of a request and kept for a moment: several consoles
-ask for the same, again and again while people move.
+ask for the same routes repeatedly while people move.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _decode_trail = msgspec.json.Decoder(list[TrailPoint]).decode
 
 
 class RouteFinder:
-    """Any thread may ask; one at a time works."""
+    """Finder of routes.  Thread-safe; one request works at a time."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -44,7 +44,8 @@ class RouteFinder:
         unit_id: str,
         rescuer_ids: Callable[[Snapshot], Iterable[str]],
     ) -> tuple[Snapshot, dict[str, Route]]:
-        """Known routes of the nearest rescuers to a unit, and the picture that they are of.
+        """Known routes of the nearest rescuers to a unit, and the picture from which they were
+        found.
 
         ``current`` returns the current picture, ``rescuer_ids`` its units that may be sent.
         """
@@ -58,7 +59,9 @@ class RouteFinder:
             return snapshot, routes_to(graph, unit_id, rescuer_ids(snapshot), NEAREST)
 
     def _has_kept(self, unit_id: str) -> bool:
-        """True if routes of a moment ago will do; a unit may have come since."""
+        """True if what was made a moment ago can be used again: it is not old, and contains the
+        unit.
+        """
         if self._made is None or time.monotonic() - self._made[0] > KEPT_S:
             return False
         return any(unit.unit_id == unit_id for unit in self._made[1].units)
@@ -88,7 +91,7 @@ def _walked(snapshot: Snapshot, trails: Trails) -> list[WalkedTrail]:
 
 
 def _trail(unit: UnitView, position: PositionView, trails: Trails) -> WalkedTrail:
-    """Trail until now.  The way to a position after a gap is unknown."""
+    """Trail until now.  The way to a position after a gap is not known."""
     raw = trails.get(unit.unit_id)
     points: Sequence[TrailPoint] = () if raw is None else _decode_trail(raw)
     now = TrailPoint(position.t_ms, position.north_m, position.east_m, position.floor)

@@ -22,7 +22,7 @@ _NO_PARAMETERS = "this address takes no parameters"
 
 
 def check_query(connection: HTTPConnection) -> None:
-    """Dependency of every route: an unknown parameter is refused, for it would have no effect."""
+    """Dependency of every route: refuses an unknown query parameter, as it would have no effect."""
     known = _query_parameters().get(connection.scope["endpoint"])
     if known is None:  # the console's page, which has no filters
         return
@@ -39,8 +39,8 @@ def check_query(connection: HTTPConnection) -> None:
 
 
 def allowed_methods(path: str) -> str:
-    """The methods that a path takes, as of the header ``Allow``: those of all its routes.  Beside
-    the API's there are the console's files and the document of the API; empty: there is nothing.
+    """Methods that a path accepts, for the header ``Allow``: those of all its routes, of the
+    console's files and of the API's document.  Empty if there is no such path.
     """
     allowed = set[str]()
     for pattern, methods in _methods():

@@ -44,11 +44,13 @@ _SERVER_LOG = logging.getLogger("uvicorn.error")  # all that it logs of requests
 class _Server(uvicorn.Server):
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None]:
-        """Signals are the station's, which stops everything in order."""
+        """Do nothing: the station handles signals itself, and stops everything in order."""
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listens by itself: uvicorn allows a client a minute for its TLS handshake."""
+        """Listen with our own connection class, as uvicorn allows a client a minute for its TLS
+        handshake.
+        """
         await super().startup(sockets=[])
         config = self.config
 
@@ -68,7 +70,7 @@ class _Server(uvicorn.Server):
 
 
 class _Connection(H11Protocol):
-    """HTTP connection with timeouts for head and body: an idle one is closed."""
+    """HTTP connection with timeouts for head and body; an idle connection is closed."""
 
     _timer: asyncio.TimerHandle | None = None
     _body_since_s: float | None = None  # None: no body is waited for
@@ -107,7 +109,9 @@ class _Connection(H11Protocol):
             self._timer = self.loop.call_later(_REQUEST_TIMEOUT_S, self._on_timeout)
 
     def _reset_body_timeout(self) -> None:
-        """Starts the timeout anew by the bytes of the body so far, however small its pieces."""
+        """Set the timeout again by the number of bytes that the body has so far, however small its
+        parts are.
+        """
         now_s = self.loop.time()
         if self._body_since_s is None:
             self._body_since_s, self._body_bytes = now_s, 0
@@ -142,10 +146,10 @@ class ConsoleServer:
         on_stop: Callable[[], None] = lambda: None,
         is_known: Callable[[str], bool] = lambda _: True,
     ) -> None:
-        """``on_stop`` is called at each request to stop.  ``is_known``: whether a user is logged in
-        from an address; all others have fewer connections.
+        """``on_stop`` is called at each request to stop.  ``is_known`` tells whether a user is
+        logged in from an address; other addresses may have fewer connections.
 
-        Raises ConfigError where the certificate or its key cannot be used.
+        Raises ConfigError if the certificate or its key cannot be used.
         """
         self._socket = listening
         if isinstance(listening, ConnectionLimitedSocket):
@@ -179,7 +183,7 @@ class ConsoleServer:
         self._log_limiter = RateLimitFilter(SystemClock())
 
     async def serve(self) -> None:
-        """Until ``stop``."""
+        """Serve until ``stop`` is called."""
         _SERVER_LOG.addFilter(self._log_limiter)
         try:
             await self._server.serve(sockets=[self._socket])
@@ -192,7 +196,7 @@ class ConsoleServer:
             await asyncio.sleep(0.01)
 
     def stop(self) -> None:
-        """From the loop's thread."""
+        """Stop serving; to be called in the event loop's thread."""
         self._server.should_exit = True
         self._on_stop()
 
@@ -202,9 +206,9 @@ async def serve_until_stopped(
     announce: Callable[[str], None],
     housekeeping: Callable[[], None] = lambda: None,
 ) -> None:
-    """Serve until SIGINT or SIGTERM, and say ``ready ADDRESS`` once consoles can connect.
+    """Serve until SIGINT or SIGTERM, and print ``ready ADDRESS`` once consoles can connect.
 
-    ``housekeeping`` is called now and then, in a thread; where it fails, the station goes on.
+    ``housekeeping`` is called regularly in a thread; if it fails, the station continues.
     """
     gc_tuning.freeze()
     loop = asyncio.get_running_loop()
@@ -232,7 +236,7 @@ def _run_housekeeping(housekeeping: Callable[[], None], fault_log: LogOnChange) 
 
 
 def bind(host: str, port: int) -> socket.socket:
-    """Take the port; raises ConfigError where another program has it."""
+    """Bind the port.  Raises ConfigError if another program uses it."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
@@ -262,7 +266,9 @@ def console_server(
     http: HttpConfig,
     on_stop: Callable[[], None] = lambda: None,
 ) -> ConsoleServer:
-    """Server of a console with its settings; addresses of logged-in users have more connections."""
+    """Server of a console, with its settings; addresses of logged-in users may have more
+    connections.
+    """
     return ConsoleServer(
         app,
         listening,

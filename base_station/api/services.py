@@ -59,7 +59,7 @@ _TOO_BUSY = coded("station-too-busy", "the station is too busy to say this now; 
 
 @dataclass(frozen=True, kw_only=True)
 class LoginServices:
-    """Services for logging in and for the accounts, at a station and at a department."""
+    """Services for logging in and for accounts, at a station or a department."""
 
     accounts: Accounts
     records: Records  # of which the audit
@@ -106,12 +106,12 @@ class Services(LoginServices):
     timeline_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # as above, shorter work
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
-        """Have the drive take a person's action, and wait until it is decided and in the log; not
-        for the database, which has it later: reads of that wait (``current_tables``).  Names of
-        the roster in its texts go into the log as references.
+        """Let the drive carry out a person's action, and wait until it is decided and in the log.
+        The database gets it later; reads of tables wait for that (``current_tables``). Names of the
+        roster in its texts go into the log as references.
 
-        Raises UserError with the reason where the action had no effect.  ``action_id``: as of
-        ``OperatorGate``; Problem 422 where the client's key came with another request before.
+        Raises UserError with the reason if the action had no effect.  ``action_id``: as in
+        ``OperatorGate``; Problem 422 if the client has used its key for another request before.
         """
         try:
             nameless = with_references(action, self.roster.ids_by_name())
@@ -126,14 +126,14 @@ class Services(LoginServices):
         return done
 
     def picture(self) -> Snapshot:
-        """Gives the snapshot of now, without trails."""
+        """Return the present snapshot without trails."""
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             raise StoreError(_TOO_BUSY) from None
 
     def picture_with_trails(self) -> tuple[Snapshot, Trails]:
-        """Gives the same with the trails of all units."""
+        """Return the present snapshot with the trails of all units."""
         try:
             return self.hub.picture().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
@@ -149,7 +149,7 @@ class Services(LoginServices):
 
 
 def audit_given_out(station: Services, by: str, kind: str, what: str) -> None:
-    """Enter the data that is given out next in the audit.  Problem 503 if that fails."""
+    """Enter the data that is about to be given out in the audit.  Problem 503 if that fails."""
     try:
         station.records.audit(by, kind, what)
     except StoreError as error:

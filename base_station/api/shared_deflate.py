@@ -26,7 +26,7 @@ _TAIL = b"\x00\x00\xff\xff"  # of a flush; not sent (RFC 7692, 7.2.1)
 
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """uvicorn's, with the extension of this module where the console offers it."""
+    """uvicorn's protocol, with this extension if the console offers it."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)

@@ -30,7 +30,7 @@ TURN_S = 15.0  # 12 MB over a radio link of 6.4 Mbit/s
 
 
 class UploadTurn:
-    """Right of one upload to be read and worked on."""
+    """Turn of one upload, in which its body is read and processed."""
 
     def __init__(self, account: str) -> None:
         self.account = account
@@ -40,7 +40,7 @@ class UploadTurn:
         self._timeout: asyncio.Timeout | None = None
 
     async def receive(self, receive: Receive) -> Message:
-        """The next piece of the body.  Problem 408 once the turn has ended."""
+        """Return the next part of the body.  Problem 408 once the turn has ended."""
         try:
             async with asyncio.timeout(0.0 if self.has_ended else None) as self._timeout:
                 message = await receive()
@@ -52,14 +52,14 @@ class UploadTurn:
         return message
 
     def end(self) -> None:
-        """Read no more of it."""
+        """End the turn; no more of the body is read."""
         self.has_ended = True
         if self._timeout is not None:
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
 
 class UploadTurns:
-    """For the loop's thread."""
+    """Turns of all uploads.  To be used in the event loop's thread only."""
 
     def __init__(self, turn_s: float = TURN_S) -> None:
         self._turn_s = turn_s
@@ -80,7 +80,7 @@ class UploadTurns:
             self._grant()
 
     def _grant(self) -> None:
-        """Give the turns that are free; where a body waits for one, end slow ones."""
+        """Give out the free turns; if a body waits for one, end slow ones."""
         account = self._next_account()
         while account is not None and len(self._turns) < _MAX_TURNS:
             queue = self._waiting.pop(account)
@@ -98,14 +98,14 @@ class UploadTurns:
             self._end_slow()
 
     def _next_account(self) -> str | None:
-        """Account that waits longest of those that may have one more turn."""
+        """Account that has waited longest among those that may have another turn."""
         self._waiting = {account: queue for account, queue in self._waiting.items() if queue}
         held = Counter(turn.account for turn in self._turns)
         may = (one for one in self._waiting if held[one] < _MAX_TURNS_PER_ACCOUNT)
         return next(may, None)
 
     def _end_slow(self) -> None:
-        """End the oldest turn whose body is still coming, once it has had its time."""
+        """End the oldest turn whose body is still being received, once its time is over."""
         oldest = next((turn for turn in self._turns if turn.is_reading), None)
         if oldest is None or any(turn.has_ended for turn in self._turns):
             return
@@ -117,7 +117,7 @@ class UploadTurns:
 
 
 class UploadRoute(APIRoute):
-    """Route of a router with large bodies: those of logged-in users are read, in turn."""
+    """Route of a router with large bodies; those of logged-in users are read in turn."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         handle = super().get_route_handler()

@@ -64,7 +64,9 @@ class AlarmExplanationAnswer(Answer, frozen=True):
 
 
 class Acknowledgement(Form):
-    """Acknowledgement of an alarm as it was shown; an alarm that was raised again since stays open."""
+    """Acknowledgement of an alarm as it was shown; an alarm that was raised again since stays
+    open.
+    """
 
     last_raised_ms: Annotated[int, Field(gt=0, le=MAX_TIME_MS)]
 

@@ -115,7 +115,9 @@ def post_dispatch(
 
 @router.get("/dispatch")
 def list_dispatches(station: Station, _: Viewer) -> list[OfferedDispatch]:
-    """Dispatches from which no incident was opened, oldest first, after that of the open incident."""
+    """Dispatches from which no incident was opened, oldest first, after that of the open
+    incident.
+    """
     picture = station.picture()
     incident = picture.incident
     of_incident = () if incident is None or incident.dispatch is None else (incident.dispatch,)

@@ -111,7 +111,9 @@ def _authority(station: Services) -> PkiFolder:
 
 @contextmanager
 def _as_refusal() -> Iterator[None]:
-    """Answer a refusal of the certificate authority by a problem, as the request itself was valid."""
+    """Answer a refusal of the certificate authority by a problem, as the request itself was
+    valid.
+    """
     try:
         yield
     except ConfigError as error:

@@ -41,7 +41,9 @@ def _me(principal: Principal, station: LoginServices) -> Me:
 
 
 class Ticket(BaseModel):
-    """Ticket that logs its holder in at the other station's console, as the user who requested it."""
+    """Ticket that logs its holder in at the other station's console, as the user who requested
+    it.
+    """
 
     ticket: str
     lasts_s: int

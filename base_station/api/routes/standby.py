@@ -35,7 +35,9 @@ def get_leads(station: Station, response: Response) -> Leads:
 
 @router.post("/standby/take-over", status_code=202)
 def take_over(station: Station, who: Commander) -> None:
-    """Make this station the leading one; the other one, if it can be reached, becomes its standby."""
+    """Make this station the leading one; the other one, if it can be reached, becomes its
+    standby.
+    """
     ha_status = _ha_status_or_404(station)
     station.records.audit(who.username, "TakeOverByHand", ha_status.view().station)
     ha_status.take_over()
