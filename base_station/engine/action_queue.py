@@ -25,7 +25,7 @@ _APPLIED_WITHOUT_LOG = (SendCommand, ReportProblem)  # an evacuation waits for n
 
 
 class PerformedAction(NamedTuple):
-    """An action that was logged and applied, and not answered yet."""
+    """Action that was logged and applied, and is not answered yet."""
 
     action: Action
     result: ActionResult
@@ -37,7 +37,9 @@ class PerformedAction(NamedTuple):
 
 
 class ActionQueue:
-    """``put`` from any thread; all else in the engine's, or where that has ended."""
+    """Actions that wait.  ``put`` may be called from any thread, all else in the engine's thread,
+    or when that has ended.
+    """
 
     def __init__(
         self, pipeline: StationPipeline, write_ahead: WriteAhead, header_factory: HeaderFactory
@@ -56,7 +58,7 @@ class ActionQueue:
         return future
 
     def perform_waiting(self, is_saving: Callable[[], bool]) -> Iterator[PerformedAction]:
-        """Perform the actions that wait, one after another; ``is_saving``: a checkpoint is being
+        """Perform the waiting actions one after another.  ``is_saving``: a checkpoint is being
         written.
         """
         for _ in range(len(self._waiting)):
@@ -75,8 +77,8 @@ class ActionQueue:
             yield PerformedAction(action, result, future)
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
-        """Raises StoreError where the log does not take it: it is not done then, but for commands
-        that people must receive in any case.
+        """Log and apply an action.  Raises StoreError if the log does not take it; then it has no
+        effect, except for commands that people must receive in any case.
         """
         header = self._header_factory.header()
         action_id = action_id or f"{header.boot_id:016x}-{header.seq}"

@@ -23,8 +23,8 @@ class Admission(Enum):
 
 
 def classify(key: str, event: StationEvent, state: StationState) -> Admission:
-    """``event``: the decoded record under ``key``.  An unreadable record is kept, counted and
-    shown.
+    """Decide about a message; ``event`` is the decoded record under ``key``. An unreadable record
+    is kept, counted and shown.
     """
     try:
         channel = parse_key(key)[1]
@@ -39,7 +39,7 @@ def classify(key: str, event: StationEvent, state: StationState) -> Admission:
 
 
 def mark_missing(number: MessageNumber | None, state: StationState) -> None:
-    """Mark a message as missing that the log did not take or has lost: it is fetched from its
+    """Mark a message as missing which the log did not take or has lost.  It is fetched from its
     unit's journal when there is room.
     """
     if number is not None and (sender := state.sender(number[0])) is not None:
@@ -47,8 +47,8 @@ def mark_missing(number: MessageNumber | None, state: StationState) -> None:
 
 
 def _reason_to_drop(event: StationEvent, state: StationState) -> Admission | None:
-    """Return ``DUPLICATE`` for a message that came before: over two links, repeated by the network,
-    or replayed; ``RESTART_STORM`` where its sender has more starts than are possible.
+    """Return ``DUPLICATE`` for a message that came before (over two links, repeated by the network,
+    or replayed), and ``RESTART_STORM`` if its sender has more starts than are possible.
     """
     number = number_of(event)
     if number is None:
@@ -68,7 +68,7 @@ def _reason_to_drop(event: StationEvent, state: StationState) -> Admission | Non
 
 
 def rejection_reason(admission: Admission, key: str) -> str:
-    """Return why a message is rejected, as a sentence for a person; empty: no fault of a sender."""
+    """Return a sentence about why a message is rejected; empty if its sender is not at fault."""
     if admission is Admission.FORGED:
         return coded(
             "sender-forged",

@@ -15,7 +15,7 @@ PART = "checkpoint"
 
 
 class CheckpointWriter:
-    """Writer for one thread, which waits only in ``finish``."""
+    """Writer of checkpoints for one thread, which waits in ``finish`` only."""
 
     def __init__(self, log: Log, checkpoints: Checkpoints, health: HealthMonitor) -> None:
         self._log = log
@@ -29,7 +29,7 @@ class CheckpointWriter:
         return self._under_way is not None and not self._under_way.done()
 
     def begin(self, log_position: tuple[int, int], state: bytes) -> None:
-        """``state`` as it is at ``log_position`` of the log."""
+        """Begin to write ``state``, as it is at ``log_position`` of the log."""
         self.finish()
         self._under_way = self._worker.submit(self._save, log_position, state)
 
@@ -39,7 +39,7 @@ class CheckpointWriter:
             self.finish()
 
     def finish(self) -> None:
-        """Wait until the checkpoint that was begun is on the disk, or its failure is reported."""
+        """Wait until the checkpoint is on disk or its failure is reported."""
         saved, self._under_way = self._under_way, None
         if saved is None:
             return

@@ -42,7 +42,7 @@ TRAILS_PER_DELTA = 8  # backfilled trails are published whole: so many with one 
 
 
 class ConsolePublisher:
-    """Publisher of one pipeline, with the changes that consoles have not been sent."""
+    """Publisher of one pipeline, with the changes that were not sent to consoles yet."""
 
     def __init__(self, pipeline: StationPipeline, sink: LiveSink, people: PersonLookup) -> None:
         self._sink = sink
@@ -131,7 +131,7 @@ class ConsolePublisher:
 
     @property
     def is_urgent(self) -> bool:
-        """True where more than positions and readings of units changed."""
+        """True if more changed than positions and readings of units."""
         return bool(self._alarms or self._commands or self._pins_changed)
 
     @property
@@ -157,7 +157,7 @@ class ConsolePublisher:
         return self._new_snapshot(replay)
 
     def _backfilled_trails(self) -> Mapping[str, msgspec.Raw]:
-        """Return a bounded number of backfilled trails, with the points of a second together, as a
+        """Return a bounded number of backfilled trails.  Points of a second are sent together, as a
         gap is filled over seconds.
         """
         units = self._pipeline.state.units
@@ -172,7 +172,9 @@ class ConsolePublisher:
         return shown, self._trails.all(state.units.values())
 
     def _frame_now(self) -> tuple[object, ...]:
-        """Parts that deltas do not carry; the pipeline replaces them whole when they change."""
+        """Parts of the picture that deltas do not carry; the pipeline replaces them as a whole when
+        they change.
+        """
         state = self._pipeline.state
         sites = state.sites.values()
         grounds = [part for site in sites for part in (site.plan, site.anchor)]

@@ -25,7 +25,7 @@ KEYFRAME_NS = 120 * NS_PER_S  # of log that a seek reads at most
 
 
 class ConsoleRecorder:
-    """A ``LiveSink`` of a publisher of its own; in the engine's thread."""
+    """``LiveSink`` of a publisher of its own, in the engine's thread."""
 
     def __init__(self, pipeline: StationPipeline, log: Log) -> None:
         self._pipeline = pipeline
@@ -37,7 +37,7 @@ class ConsoleRecorder:
         self.publisher = ConsolePublisher(pipeline, self, reference_person)
 
     def record(self, *, at_once: bool = False) -> None:
-        """Record a delta if one is due; ``at_once``: after an operator's action."""
+        """Record a delta if one is due.  ``at_once``: after an operator's action."""
         if not self._is_wanted:
             return
         if self._log.is_behind:  # its memory is for events, which cannot be computed again

@@ -1,5 +1,5 @@
-"""Messages of units that wait for an answer: they are admitted as those from the bus, and answered
-once they are on the disk.
+"""Messages of units that wait for an answer.  They are admitted like those from the bus, and
+answered once they are on disk.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ _Waiting = tuple[Sequence[tuple[str, bytes]], Future[DeliveryResult]]
 
 
 class DeliveryQueue:
-    """``put`` from any thread; all else in the engine's, or where that has ended."""
+    """Messages that wait.  ``put`` may be called from any thread, all else in the engine's thread,
+    or when that has ended.
+    """
 
     def __init__(self, pipeline: StationPipeline, log: Log, clock: Clock) -> None:
         self._pipeline = pipeline
@@ -38,7 +40,7 @@ class DeliveryQueue:
         return future
 
     def admit_waiting(self, admit: Callable[[int, str, bytes], Admission]) -> None:
-        """Admit the waiting deliveries, flush them to the disk, then answer."""
+        """Admit the waiting messages, flush them to disk, then answer."""
         results: list[tuple[Future[DeliveryResult], DeliveryResult | None]] = []
         for _ in range(len(self._waiting)):
             messages, future = self._waiting.popleft()
@@ -72,7 +74,7 @@ class DeliveryQueue:
             future.set_exception(StoreError(_STOPPING))
 
     def _is_kept(self, payload: bytes) -> bool:
-        """False of a message that the log did not take: it counts as missing."""
+        """False for a message that the log did not take; it counts as missing."""
         header = header_of(payload)
         if header is None:
             return False

@@ -1,4 +1,4 @@
-"""Pace of deltas for consoles: as frequent as is useful, within a share of processor time."""
+"""Rate of deltas for consoles: as frequent as is useful, within a share of processor time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MOST_SHARE = 4
 
 
 class DeltaPace:
-    """Due times of deltas, by the cost of the last one; of a monotonic clock."""
+    """Due times of deltas, from the cost of the last one; by a monotonic clock."""
 
     def __init__(self, now_ns: int) -> None:
         self.due_ns = now_ns
@@ -22,7 +22,7 @@ class DeltaPace:
         self.due_ns = 0
 
     def note_sent(self, now_ns: int, spent_ns: int) -> None:
-        """``spent_ns``: processor time of the thread for the delta."""
+        """Note a sent delta.  ``spent_ns``: the thread's processor time for it."""
         often_ns = min(spent_ns * OFTEN_SHARE, USUAL_NS)
         interval_ns = max(SHORTEST_NS, often_ns, spent_ns * MOST_SHARE)
         late_ns = now_ns - self.due_ns

@@ -125,7 +125,7 @@ class StationEngine:
         self._worker.start()
 
     def stop(self) -> None:
-        """Finish all received events, and end."""
+        """Process all received events, then end."""
         self._worker.stop()
         self._ports.feed.wake()
         self._worker.join(STOP_TIMEOUT_S)
@@ -149,7 +149,7 @@ class StationEngine:
         return self._worker.stopping.is_set() and not self._worker.is_alive
 
     def save_soon(self) -> None:
-        """Write a checkpoint at once, because those on the disk were deleted."""
+        """Write a checkpoint at once, because those on disk were deleted."""
         self._due.checkpoint_ns = 0
         self._ports.feed.wake()
 
@@ -175,10 +175,10 @@ class StationEngine:
         return self._write_ahead.log_position
 
     def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
-        """Step the events of a log; gives the number of events stepped.
+        """Step the pipeline with the events of a log, and return their number.
 
-        ``after`` is the place (time, events at that time) of the checkpoint with which the
-        pipeline was made.
+        ``after`` is the position (time, number of events with that time) of the checkpoint from
+        which the pipeline was made.
         """
         stepped = self._write_ahead.rebuild(self._with_checkpoints(records), after)
         self._flush_urgent()
@@ -187,7 +187,9 @@ class StationEngine:
         return stepped
 
     def _with_checkpoints(self, records: Iterable[Record]) -> Iterator[Record]:
-        """Records, with checkpoints on the way, so that a killed start does not apply all again."""
+        """Pass on records and write checkpoints meanwhile, so that a start that is killed need not
+        apply all of them again.
+        """
         due_ns = 0
         for record in records:
             if record[0] >= due_ns:
@@ -204,7 +206,7 @@ class StationEngine:
         return 0.0
 
     def _run_once(self) -> bool:
-        """Process received events, then all work that is due; True if events were received."""
+        """Process received events, then all work that is due.  True if events were received."""
         clock, due = self._ports.clock, self._due
         wait_ns = min(due.tick_ns, self._delta_pace.due_ns) - clock.monotonic_ns()
         records = self._ports.feed.take(max(wait_ns, 0) / NS_PER_S)
@@ -246,7 +248,7 @@ class StationEngine:
         return bool(records)
 
     def _advance_time(self, now_ns: int, *, follows: bool) -> None:
-        """Tick once a second, and sooner where a link is gone."""
+        """Tick once a second, and at once when a link is gone."""
         due, unlinked = self._due, self._ports.unlinked()
         last_run_ns, self._last_run_ns = self._last_run_ns, now_ns
         if now_ns - last_run_ns > STALLED_NS and not self._receives_first:
@@ -266,7 +268,7 @@ class StationEngine:
             self._update_health()
 
     def _admit(self, t_ns: int, key: str, payload: bytes) -> Admission:
-        """Classify a unit's message, and log and apply it where it is accepted."""
+        """Classify a unit's message; log and apply it if it is accepted."""
         event = self._write_ahead.event_of(max(t_ns, self._actions.not_before_ns), key, payload)
         admission = classify(key, event, self._pipeline.state)
         if admission is Admission.ACCEPT:  # nearly always
@@ -317,7 +319,7 @@ class StationEngine:
         self._health_due = True
 
     def _flush_urgent(self) -> None:
-        """Bring urgent records to the disk before the database or anyone else gets them."""
+        """Flush urgent records to disk before the database or a console gets them."""
         self._write_ahead.flush_urgent()
         if self._projector.is_urgent:
             self._project()
@@ -344,7 +346,7 @@ class StationEngine:
             )
 
     def _report_problems(self) -> None:
-        """Log parts that fail, or work again, as events."""
+        """Log as events which parts fail, and which work again."""
         self._checkpoint_writer.check()
         seen = {
             "log": self._ports.log.problem,

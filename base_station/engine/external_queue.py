@@ -1,4 +1,4 @@
-"""People and markers of other systems that wait for the engine."""
+"""People and markers from other systems that wait for the engine."""
 
 from __future__ import annotations
 
@@ -19,12 +19,14 @@ log = logging.getLogger(__name__)
 
 
 class ExternalQueue:
-    """``put`` from any thread; ``apply_waiting`` in the engine's."""
+    """Batches that wait.  ``put`` may be called from any thread, ``apply_waiting`` in the engine's
+    thread.
+    """
 
     def __init__(
         self, append_and_apply: Callable[[int, str, bytes], object], header_factory: HeaderFactory
     ) -> None:
-        """``append_and_apply``: logs a record of a time and key, then applies it."""
+        """``append_and_apply`` logs a record with a time and a key, then applies it."""
         self._append_and_apply = append_and_apply
         self._header_factory = header_factory
         self._waiting: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
@@ -32,13 +34,13 @@ class ExternalQueue:
         )
 
     def put(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
-        """Queue markers and the ids of those that are gone; a full queue drops its oldest batch."""
+        """Queue markers, and the ids of removed ones; a full queue drops its oldest batch."""
         if len(self._waiting) == _WAITING_MAX:
             log.warning("other systems send markers faster than they are taken: some are left out")
         self._waiting.append((markers, removed))
 
     def apply_waiting(self, not_before_ns: int) -> None:
-        """Log and apply the waiting batches, none of them earlier than ``not_before_ns``."""
+        """Log and apply the waiting batches, with times not before ``not_before_ns``."""
         for _ in range(len(self._waiting)):
             message = ExternalMarkers(self._header_factory.header(), *self._waiting.popleft())
             t_ns = max(message.header.t_utc_ns, not_before_ns)

@@ -1,7 +1,7 @@
-"""Live feed: ordered queue of the station's records, from the bus to the engine.
+"""Live feed: the ordered queue of records from the bus to the engine.
 
-A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of`` makes
-the event of it.
+A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of``
+decodes it to an event.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ _LATE_AT_ONCE = 32  # of these behind live ones: some 3 ms of the pipeline's tim
 
 
 class LiveFeed:
-    """A queue from the bus to the one thread that steps the pipeline.
+    """Queue from the bus to the one thread that steps the pipeline.
 
-    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  Data that
-    can wait has a queue of its own, and comes in small portions behind live data.  Live data gets
-    its station time when it enters, other data when it leaves, and so the time never goes back in
-    the order in which records come out.  The queues are bounded: beyond it live data is
-    dropped, and counted in ``overflowed``; alerts are dropped only at twice the bound.
+    Any number of threads call ``offer`` and ``deliver``; one thread at a time calls ``take``. Data
+    that can wait has a queue of its own, and comes in small portions behind live data.  Live data
+    gets its station time when it enters, other data when it leaves; so the time never goes back in
+    the order in which records come out.  Both queues are bounded: live data beyond the bound is
+    dropped and counted in ``overflowed``; alerts are dropped only at twice the bound.
     """
 
     def __init__(
@@ -55,14 +55,14 @@ class LiveFeed:
 
     @property
     def overflows(self) -> bool:
-        """True where messages were dropped within the last minute."""
+        """True if messages were dropped within the last minute."""
         since_ns = self._clock.monotonic_ns() - self._overflowed_ns
         return self.overflowed > 0 and since_ns < _OVERFLOW_REPORTED_NS
 
     @property
     def late_waits(self) -> bool:
-        """True if delivered records may not be in the log yet: they wait here, or the engine took
-        them and has not called ``take`` again.
+        """True if delivered records may not be in the log yet: they wait here, or the engine has
+        taken them and not called ``take`` again.
         """
         return self._late_pending
 
@@ -81,7 +81,7 @@ class LiveFeed:
                 self._overflowed_ns = self._clock.monotonic_ns()
 
     def deliver(self, key: str, payload: bytes) -> None:
-        """As ``offer``, for data that can wait: returns when little of it waits.  An alert goes
+        """Queue a message that can wait, and return when few of these wait.  An alert is queued
         with live data.
         """
         with self._changed:
@@ -97,8 +97,8 @@ class LiveFeed:
                 self._changed.notify_all()
 
     def take(self, timeout_s: float) -> list[LogRecord]:
-        """Return all live records in order, and some of those that can wait; waits until a record,
-        ``wake`` or the timeout.
+        """Return all live records in order, and some of those that can wait.  Waits for a record,
+        for ``wake`` or for the timeout.
         """
         with self._changed:
             self._late_pending = self._late_pending and not self._all_taken
@@ -116,13 +116,13 @@ class LiveFeed:
             return records
 
     def wake(self) -> None:
-        """End the wait of ``take``, from any thread."""
+        """End the wait of ``take``. Thread-safe."""
         with self._changed:
             self._woken = True
             self._changed.notify_all()
 
     def close(self) -> None:
-        """Release all callers of ``deliver``: nothing is taken any more."""
+        """Release all callers of ``deliver``, as nothing will be taken any more."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()

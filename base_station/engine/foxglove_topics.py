@@ -30,7 +30,7 @@ class _Features(msgspec.Struct):
 
 
 class FoxgloveTopics:
-    """``of`` gives the record that belongs beside one of the station's decisions."""
+    """Records for Foxglove that belong to the station's decisions."""
 
     def __init__(self) -> None:
         self._last_second: dict[str, int] = {}
@@ -42,9 +42,9 @@ class FoxgloveTopics:
     def of(
         self, decision: FusedPosition | AlarmChange, anchor: Anchor | None
     ) -> tuple[str, bytes] | None:
-        """``(topic, payload)``; None where there is nothing to show.
+        """Return topic and payload for a decision; None if there is nothing to show.
 
-        A unit's place is logged once a second, and where the site has an anchor.
+        A unit's position is logged once a second, if the site has an anchor.
         """
         if isinstance(decision, FusedPosition):
             return self._location_of(decision, anchor)
@@ -59,8 +59,9 @@ class FoxgloveTopics:
         return location_topic(fused.unit_id), _location(fused, anchor).SerializeToString()
 
     def plan(self, plan: Plan | None, anchor: Anchor | None, t_ns: int) -> tuple[str, bytes] | None:
-        """The building on the Earth, where it is known: when it changes, and again now and then.
-        A large one is placed bit by bit, with every call some: the caller's thread is the engine's.
+        """Return the building on the Earth, if its place is known: when it changes, and again at
+        intervals.  A large one is converted in parts, some with each call, because the caller is
+        the engine's thread.
         """
         if plan is None or anchor is None:
             return None
@@ -78,8 +79,8 @@ class FoxgloveTopics:
 
 
 def _plan_in_wgs84(plan: Plan, anchor: Anchor) -> Iterator[bytes]:
-    """The plan's features in WGS-84, without heights, as a map shows none; before that comes, an
-    empty word after every ``_PLACED_AT_ONCE`` points.
+    """Convert the plan's features to WGS-84, without heights, as a map shows none.  Before the
+    result, yields an empty string after every ``_PLACED_AT_ONCE`` points.
     """
     features = []
     points = 0
@@ -101,8 +102,8 @@ def _plan_in_wgs84(plan: Plan, anchor: Anchor) -> Iterator[bytes]:
 
 
 def _to_geodetic(coordinates: Any, into: list[Any], anchor: Anchor) -> Iterator[int]:
-    """Add one ``[east_m, north_m, ...]``, or lists of such to any depth, as ``[lon, lat]``; yields
-    for each point.
+    """Append one ``[east_m, north_m, ...]``, or lists of such to any depth, as ``[lon, lat]``;
+    yields after each point.
     """
     if coordinates and isinstance(coordinates[0], int | float):
         lat_deg, lon_deg, _ = anchor.to_geodetic(coordinates[1], coordinates[0], 0.0)
@@ -145,7 +146,7 @@ def _location(fused: FusedPosition, anchor: Anchor) -> LocationFix:
 
 
 def _covariance_enu_m2(fused: FusedPosition, rotation_rad: float) -> tuple[float, ...]:
-    """3 x 3 by rows, true east, true north, up."""
+    """3 x 3 covariance by rows, along true east, true north and up, m2."""
     sine, cosine = math.sin(rotation_rad), math.cos(rotation_rad)
     north_m2, east_m2 = fused.std_north_m**2, fused.std_east_m**2
     mixed_m2 = fused.correlation_ne * fused.std_north_m * fused.std_east_m

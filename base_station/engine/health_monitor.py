@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 
 
 class HealthMonitor:
-    """Turns present problems into reports of changes."""
+    """Monitor that turns present problems into reports of changes."""
 
     def __init__(self) -> None:
         self._failed: dict[str, str] = {}  # problems since the last check, by part
@@ -43,7 +43,7 @@ class HealthMonitor:
             self.report_bug(part, error)
 
     def report_bug(self, part: str, error: Exception) -> None:
-        """Report a bug in the program; one that recurs is logged once."""
+        """Report a bug in the program; one that occurs again is logged once."""
         kinds = self._logged.setdefault(part, set())
         if type(error) not in kinds:
             kinds.add(type(error))
@@ -57,9 +57,9 @@ class HealthMonitor:
         self.report(part, text)
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """``seen``: present problems, by part, empty where there is none; ``known``: problems that
-        were reported, perhaps by an earlier run of the program.  Parts with a monitor of their own
-        are left out.
+        """Compare present problems with those that were reported.  ``seen``: present problems by
+        part, empty for a part without one; ``known``: reported problems, perhaps by an earlier run
+        of the program.  Parts with a monitor of their own are left out.
         """
         now = {**dict.fromkeys(_REPORTED_PARTS, ""), **seen, **self._failed}
         self._failed = {}
@@ -82,7 +82,5 @@ class HealthMonitor:
 
 
 def _without_numbers(text: str) -> str:
-    """Return the text without its counts, so that only another problem is reported, not every new
-    number.
-    """
+    """Return the text without its counts, so that a new count alone is not a new problem."""
     return _NUMBER.sub("", text)

@@ -1,4 +1,4 @@
-"""Liveness of units' links by liveliness tokens, which end sooner than a timeout."""
+"""State of units' links by liveliness tokens, which end sooner than a timeout would."""
 
 from __future__ import annotations
 
@@ -18,10 +18,12 @@ _WHY = "appears and vanishes on the bus many times a second"
 
 
 class LivenessMonitor:
-    """Monitor that runs until it is closed; any thread may read it."""
+    """Monitor of all links.  It runs until it is closed; any thread may read it."""
 
     def __init__(self, bus: Bus, ban: Callable[[str, str], None], clock: Clock) -> None:
-        """``ban``: function that bans a flooding unit, with the reason as text behind its name."""
+        """``ban`` bans a flooding unit; it takes the reason as text that follows the unit's
+        name.
+        """
         self._ban = ban
         self._clock = clock
         self._changes: dict[str, TokenBucket] = {}

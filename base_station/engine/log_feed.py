@@ -1,7 +1,8 @@
-"""Log feeds: records of a log in the order of recording, which is the order of stepping.
+"""Log feeds: records of a log in the order of recording, which is the order in which they are
+stepped.
 
-A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of`` makes
-the event of it.
+A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of``
+decodes it to an event.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ class RecordSource(Protocol):
         end_ns: int | None = None,
         keys: Container[str] | None = None,
     ) -> Iterator[LogRecord]:
-        """From station time ``start_ns`` until before ``end_ns``."""
+        """Records from station time ``start_ns`` to before ``end_ns``."""
 
 
 class LogFeed(ABC):
@@ -32,11 +33,11 @@ class LogFeed(ABC):
     @property
     @abstractmethod
     def log_id(self) -> str:
-        """Identity in its segments; empty: of an earlier version."""
+        """Identity of the log from its segments; empty for segments of an earlier version."""
 
     @abstractmethod
     def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
-        """The same log, with another callback for damage."""
+        """Return a feed of the same log with another callback for damage."""
 
     @abstractmethod
     def records(
@@ -45,7 +46,8 @@ class LogFeed(ABC):
         end_ns: int | None = None,
         keys: Container[str] | None = None,
     ) -> Iterator[LogRecord]:
-        """From station time ``start_ns`` until before ``end_ns``, as it stands at the first step.
+        """Records from station time ``start_ns`` to before ``end_ns``, of the log as it is at the
+        first step.
 
         Raises LogError when a segment cannot be opened.
         """
@@ -54,13 +56,13 @@ class LogFeed(ABC):
     def everything(
         self, start_ns: int, end_ns: int | None, topics: Container[str] | None
     ) -> Iterator[LogRecord]:
-        """Records of these topics, of those that follow from others too; None: all that happened
-        and was decided.
+        """Records of these topics, including those that were decided from others; None: of all
+        topics.
         """
 
     @abstractmethod
     def watch(self) -> Callable[[], bool]:
-        """Return a function that gives True if a present segment was rewritten or is gone."""
+        """Return a function that gives True once a present segment was rewritten or removed."""
 
 
 class FolderFeed(LogFeed):
@@ -74,8 +76,8 @@ class FolderFeed(LogFeed):
         flush: Callable[[], object] = lambda: None,
         on_damage: Callable[[str], object] = lambda _: None,
     ) -> None:
-        """``flush`` writes records in memory to the disk (``Recorder.flush``); ``on_damage``
-        receives a sentence about each part that cannot be read.
+        """``flush`` writes records in memory to disk (``Recorder.flush``); ``on_damage`` receives a
+        sentence about each part that cannot be read.
         """
         self._folder = folder
         self._flush = flush
@@ -115,5 +117,5 @@ class FolderFeed(LogFeed):
         return lambda: not now <= self._files()
 
     def _files(self) -> set[tuple[str, int]]:
-        """By name and which file that is: one that is written anew is another."""
+        """Segments by name and file identity: a segment that is written again is another file."""
         return {(path.name, path.stat().st_ino) for path in segment_paths(self._folder)}

@@ -1,4 +1,4 @@
-"""Report of the messages that the station has, for its units' journals."""
+"""Report of the messages that the station has, for the journals of the units."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from base_station.unit_sync.journal_client import Held
 
 
 def message_report(state: StationState, linked: Collection[str]) -> Report:
-    """Messages that are here, of units with a token (``linked``) or recent messages."""
+    """Report the messages of units that are linked or have sent something recently."""
     return {
         sender.unit_id: tuple(Held(boot.boot_id, tuple(boot.seen.runs())) for boot in sender.boots)
         for unit in state.units.values()

@@ -1,8 +1,9 @@
-"""Ports of the engine: the feed and the log it works with, and its ways to consoles and operators.
+"""Ports of the engine: the feed and the log with which it works, and its interfaces to consoles and
+operators.
 
-The engine (or a replay) is the only thread that touches the live state.  It calls everything here
-in that thread unless a method states otherwise, so an implementation takes what it is given and
-returns at once: a queue and a thread or loop of its own do the slow part.
+The engine (or a replay) is the only thread that touches the live state.  It calls all methods in
+that thread unless a method states otherwise, so an implementation must return at once: slow work is
+done in a thread or loop of its own, behind a queue.
 """
 
 from __future__ import annotations
@@ -38,63 +39,64 @@ class Feed(Protocol):
 
     @property
     def follows(self) -> bool:
-        """True if what ``take`` gave last is another station's log, ticks and actions included:
-        it is kept and stepped as it is, and nothing is decided here.
+        """True if the last records that ``take`` returned are another station's log, with ticks and
+        actions: they are kept and stepped as they are, and nothing is decided here.
         """
         ...
 
     def take(self, timeout_s: float) -> Sequence[Record]:
-        """Records that came since, in order; waits for something to come or for ``wake``."""
+        """Return the new records in order; waits for a record or for ``wake``."""
         ...
 
     def wake(self) -> None:
-        """From any thread: end the wait of ``take``."""
+        """End the wait of ``take``. Thread-safe."""
         ...
 
 
 class Log(Protocol):
-    """Store of records; never waits long and never raises for a disk that fails."""
+    """Store of records.  It never waits long, and never raises when a disk fails."""
 
     @property
     def problem(self) -> str:
-        """Reason why records are not kept, as a sentence for a person; empty: they are."""
+        """Sentence about why records are not kept; empty if they are."""
         ...
 
     @property
     def low_disk_space(self) -> str:
-        """Warning that room is short, as a sentence for a person; empty: there is room."""
+        """Sentence that warns of low disk space; empty if there is enough."""
         ...
 
     @property
     def is_behind(self) -> bool:
-        """True where records of a second ago may not be on the disk yet."""
+        """True if records of a second ago may not be on disk yet."""
         ...
 
     @property
     def refuses(self) -> bool:
-        """True where it would not keep a record now."""
+        """True if it would not keep a record now."""
         ...
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
-        """Keep a record, soon on the disk; False: it is lost."""
+        """Keep a record, which will be on disk soon.  False if it is lost."""
         ...
 
     def flush(self) -> bool:
-        """Flush all written records to the disk; True if that was done in time."""
+        """Flush all written records to disk.  True if that was done in time."""
         ...
 
 
 class LiveSink(Protocol):
-    """The console hub.  ``seq`` counts deltas; a snapshot carries that of the last delta before
-    it, so a client that has just got a snapshot goes on with the very next delta.
+    """Receiver of a console's content, such as the hub.  ``seq`` counts deltas; a snapshot carries
+    that of the last delta before it, so a client that has just received a snapshot continues with
+    the next delta.
     """
 
     def delta(self, delta: Delta) -> None:
-        """At most 20 a second, for every client that is up to date."""
+        """Send a delta to every client that is up to date; called 20 times a second at most."""
         ...
 
     def reset(self, snapshot: Snapshot, trails: Trails) -> None:
-        """Plan, anchor or incident changed, or a replay jumped: every client begins again."""
+        """Make every client begin again: plan, anchor or incident changed, or a replay jumped."""
         ...
 
 
@@ -102,8 +104,8 @@ class LiveSource(Protocol):
     """Source of a console's content: the live engine, or one replay."""
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
-        """From any thread.  ``deliver`` is called once in the source's thread, in order with the
-        calls of its ``LiveSink``; after the source has stopped it is never called.
+        """Request a snapshot.  Thread-safe.  ``deliver`` is called once in the source's thread, in
+        order with the calls of its ``LiveSink``; after the source has stopped it is never called.
         """
         ...
 
@@ -118,7 +120,7 @@ class ActionResult(msgspec.Struct, frozen=True):
 
     @staticmethod
     def before(state: StationState, action_id: str) -> ActionResult | None:
-        """Result of the earlier request with this id; None where there is none."""
+        """Result of the earlier request with this id; None if there was none."""
         first = idempotency.earlier_result(state, action_id)
         if first is None:
             return None
@@ -131,16 +133,16 @@ class OperatorGate(Protocol):
     """Entry of operator actions into the engine."""
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
-        """From any thread.  The future is done once the action is in the log and in the live
-        state; it carries ``StoreError`` where the station is stopping.  With an ``action_id`` of a
-        client's (``core.idempotency``) the result is that of the first request with that client's
-        key, now or before.
+        """Queue an action.  Thread-safe.  The future is done once the action is in the log and in
+        the live state; it carries ``StoreError`` if the station is stopping.  With an ``action_id``
+        of a client (``core.idempotency``) the result is that of the first request with that
+        client's key, now or before.
         """
         ...
 
 
 class DeliveryResult(NamedTuple):
-    """Fate of messages that were handed to the engine at once, one entry each."""
+    """Outcome for messages that were handed to the engine together, one entry for each."""
 
     admissions: tuple[Admission, ...]
 
@@ -152,16 +154,16 @@ class EngineGate(OperatorGate, Protocol):
     """Entry of operator actions, and of units' messages that wait for an answer."""
 
     def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
-        """From any thread: keys and payloads of units' messages.  The future is done once those
-        that are new are in the log, on the disk; it carries ``StoreError`` where one of them is
-        not kept, and then all of them may be delivered again.
+        """Queue keys and payloads of units' messages.  Thread-safe.  The future is done once the
+        new ones are in the log, on disk; it carries ``StoreError`` if one of them was not kept, and
+        then all of them may be delivered again.
         """
         ...
 
 
 @dataclass(frozen=True)
 class EnginePorts:
-    """Everything the engine works with."""
+    """Parts with which the engine works."""
 
     feed: Feed
     log: Log

@@ -1,4 +1,4 @@
-"""Projector: reduces the pipeline's outputs to rows of the database."""
+"""Projector: makes rows of the database from the pipeline's outputs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LAST_MESSAGE_STEP_NS = 5 * NS_PER_S  # the times of units' last messages are sto
 
 
 class Projector:
-    """Collects outputs; ``take`` returns their projection."""
+    """Collector of outputs, whose projection ``take`` returns."""
 
     def __init__(self) -> None:
         self._alarms: list[AlarmChange] = []
@@ -64,11 +64,11 @@ class Projector:
 
     @property
     def is_urgent(self) -> bool:
-        """True where it has more than positions and times of last messages."""
+        """True if it has more than positions and times of last messages."""
         return bool(self._alarms or self._actions or self._descriptions)
 
     def take(self, t_ns: int) -> Projection | None:
-        """Projection of the collected outputs; None where nothing changed."""
+        """Return the projection of the collected outputs; None if nothing changed."""
         parts = (
             self._alarms,
             self._tracks,
@@ -111,6 +111,6 @@ class Projector:
 
 
 def _at_station_time(action: OperatorAction, t_ns: int) -> OperatorAction:
-    """A projection may hold actions of different times, so each carries its own."""
+    """Give each action its own time, as a projection may have actions of different times."""
     header = msgspec.structs.replace(action.header, t_utc_ns=t_ns)
     return msgspec.structs.replace(action, header=header)

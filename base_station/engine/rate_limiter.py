@@ -1,7 +1,8 @@
-"""Rate limiter for each sender, so that one that floods delays no other.
+"""Rate limiter for each sender, so that a flooding sender delays no other.
 
-A unit sends some fifty messages a second.  What is far beyond that never reaches the feed: it costs
-no log and no step.  From an honest unit it comes all the same, from its journal.
+A unit sends about fifty messages a second.  What is far beyond that never reaches the feed, and so
+costs neither log nor processing.  An honest unit loses nothing by it: the messages are fetched from
+its journal.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class _Sender:
 
 
 class SenderRateLimiter:
-    """``offer`` passes on the messages within their sender's limits."""
+    """Limiter that passes on the messages within the limits of their sender."""
 
     def __init__(self, offer: Callable[[str, bytes], None], clock: Clock) -> None:
         self._offer = offer
@@ -44,7 +45,7 @@ class SenderRateLimiter:
         self._reported: set[str] = set()
 
     def offer(self, key: str, payload: bytes) -> None:
-        """Callback for a bus, from one thread at a time; ``muster/v1/SENDER/...``."""
+        """Callback for a bus, from one thread at a time; the key is ``muster/v1/SENDER/...``."""
         parts = key.split("/", 3)
         what = parts[-1]
         if what.startswith("command/"):  # sent to a unit, not by it
@@ -61,10 +62,11 @@ class SenderRateLimiter:
         self._over_limit[sender_id] = now_ns if now_ns - last_ns > _PAUSE_NS else since_ns, now_ns
 
     def changes(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """Reports on senders that exceed their share now, or have long been well again; one thread.
+        """Return reports on senders that now exceed their share, or that have kept it again for
+        long.  For one thread.
 
-        ``known``: the problems that stand reported, by part.  Reports of an earlier run of the
-        program, or of the other of two stations, end here too.
+        ``known``: problems that stand reported, by part; reports of an earlier run of the program,
+        or of the other of two stations, end here too.
         """
         now_ns = self._clock.monotonic_ns()
         for sender_id in [one.removeprefix(_PART) for one in list(known) if one.startswith(_PART)]:

@@ -1,5 +1,5 @@
-"""The newest posted samples of a unit, for its tracking agent: what the link to it has lost, it
-asks for as it asks the journal of a unit on the bus.
+"""Newest posted samples of a unit.  Its tracking agent asks for those that the link to it has lost,
+as it asks the journal of a unit on the bus.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _log = logging.getLogger(__name__)
 
 
 class RecentSamples:
-    """Thread-safe."""
+    """Ring of messages.  Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -27,7 +27,7 @@ class RecentSamples:
         self._kept_bytes = 0
 
     def add(self, boot_id: int, seq: int, payload: bytes) -> None:
-        """Keep a message, and give up the oldest ones for it."""
+        """Add a message; the oldest ones are dropped to make room."""
         with self._lock:
             self._kept.append((boot_id, seq, payload))
             self._kept_bytes += len(payload)
@@ -35,7 +35,9 @@ class RecentSamples:
                 self._kept_bytes -= len(self._kept.popleft()[2])
 
     def replies(self, key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
-        """Answer a query as of ``edge.storage.journal.server``; nothing where it makes no sense."""
+        """Answer a query in the form of ``edge.storage.journal.server``; without a reply if it is
+        not valid.
+        """
         del payload
         values = dict(pair.split("=", 1) for pair in parameters.split(";") if "=" in pair)
         try:

@@ -1,8 +1,8 @@
-"""Intake of samples that a unit posts over HTTPS: into the log first, then onto the bus.
+"""Intake of samples that a unit posts over HTTPS: first into the log, then onto the bus.
 
-The samples go through the engine as those from the bus, and are then published under the unit's
-keys for its tracking agent.  A unit that posts sends no description of itself: the intake makes
-one for each run of it, with sequence number 0, which no message of a unit has.
+The samples go through the engine like those from the bus, and are then published under the unit's
+keys for its tracking agent.  A unit that posts sends no description of itself: the intake makes one
+for each of its runs, with sequence number 0, which no message of a unit has.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class _UnitIntake:
 
 
 class SampleIntake:
-    """Thread-safe."""
+    """Intake of all units that post.  Thread-safe."""
 
     def __init__(self, deliver: Deliver, bus: Bus, clock: Clock) -> None:
         self._deliver = deliver
@@ -63,7 +63,7 @@ class SampleIntake:
         self._units: dict[str, _UnitIntake] = {}
 
     def wait_s(self, unit_id: str, size_bytes: int) -> float:
-        """Time until the unit may post so much; 0: it may now, and has."""
+        """Time until the unit may post this amount; 0 if it may now, and then it is counted."""
         unit = self._unit(unit_id)
         now_ns = self._clock.monotonic_ns()
         with self._lock:
@@ -74,9 +74,9 @@ class SampleIntake:
     def take(self, unit_id: str, batches: Sequence[RawImu]) -> Receipt:
         """Log and publish batches of one run of the unit, in their order.
 
-        A batch is the same where run and sequence number are: it is kept once.  Raises UserError
-        where the unit has started too often, ConfigError where the sample rate is unknown, and
-        StoreError where the samples are not on the disk: they are to be posted again.
+        A batch is identified by run and sequence number, and kept once.  Raises UserError if the
+        unit has started too often, ConfigError if the sample rate is unknown, and StoreError if the
+        samples are not on disk: they are to be posted again.
         """
         unit = self._unit(unit_id)
         with unit.lock:
@@ -118,7 +118,9 @@ def _channel(message: Message) -> Channel:
 
 
 def _description(before: UnitDescription | None, batches: Sequence[RawImu]) -> UnitDescription:
-    """Description of the run that the batches are of; ``before``: of the run that posted last."""
+    """Description for the run of the batches.  ``before``: description of the run that posted
+    last.
+    """
     first = batches[0]
     if before is not None and before.header.boot_id == first.header.boot_id:
         return before

@@ -1,4 +1,4 @@
-"""Bans of units that flood the bus with what cannot be dropped before it costs others time."""
+"""Bans of units that flood the bus with messages that cost others time even if they are dropped."""
 
 from __future__ import annotations
 
@@ -28,17 +28,19 @@ class _Ban(NamedTuple):
 
 
 class SenderBans:
-    """Bans, each longer than the one before.  Any thread bans; one thread asks for the changes."""
+    """Bans of senders, each longer than the one before.  Any thread may ban; one thread asks for
+    the changes.
+    """
 
     def __init__(self, order: Callable[[str, float], None], clock: Clock) -> None:
-        """``order`` takes the links of a sender away for so many seconds."""
+        """``order`` takes the links of a sender away for a number of seconds."""
         self._order = order
         self._clock = clock
         self._lock = Lock()
         self._bans: dict[str, _Ban] = {}
 
     def ban(self, sender_id: str, reason: str) -> None:
-        """``reason``: half a sentence that follows the name of the unit."""
+        """Ban a unit.  ``reason``: half a sentence that follows the name of the unit."""
         now_ns = self._clock.monotonic_ns()
         with self._lock:
             before = self._bans.get(sender_id)
@@ -53,7 +55,9 @@ class SenderBans:
         self._order(sender_id, seconds)
 
     def changes(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """``known``: the problems that stand reported, by part, perhaps by an earlier run."""
+        """Return reports on bans that begin or have ended.  ``known``: problems that stand
+        reported, by part, perhaps by an earlier run.
+        """
         now_ns = self._clock.monotonic_ns()
         with self._lock:
             self._drop_old(now_ns)

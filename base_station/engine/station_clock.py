@@ -1,4 +1,4 @@
-"""Station time: the time of the log, of sessions and of everything shown to people."""
+"""Station time: the time of the log, of sessions and of all that people are shown."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _REPORT_FROM_NS = 5 * NS_PER_S
 
 
 class SteadyClock:
-    """A clock whose UTC never goes back and never stands still.
+    """Clock whose UTC never goes back and never stands still.  Thread-safe.
 
-    It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
-    monotonic time until the other has caught up.  While it is held it goes on likewise when the
-    machine's is set far forward: else members would count as missing since yesterday because a
-    clock was set.  From any thread.
+    It follows the machine's UTC forwards.  When that is set back, the clock continues at the rate
+    of monotonic time until the machine's UTC has caught up.  While the clock is held, it does the
+    same when the machine's UTC is set far forward: otherwise members would count as missing since
+    yesterday because a clock was set.
     """
 
     def __init__(self, clock: Clock, not_before_ns: int = 0) -> None:
@@ -30,17 +30,18 @@ class SteadyClock:
         self._is_held: Callable[[], bool] = lambda: False
 
     def hold_while(self, is_held: Callable[[], bool]) -> None:
-        """``is_held`` may be asked from any thread."""
+        """Hold the clock while ``is_held`` returns True; it may be called from any thread."""
         self._is_held = is_held
 
     def not_before(self, utc_ns: int) -> None:
-        """Another clock has reached ``utc_ns``: go on from there."""
+        """Continue from ``utc_ns``, which another clock has reached, if that is later."""
         with self._lock:
             self._offset_ns = max(self._offset_ns, utc_ns - self._clock.monotonic_ns())
 
     def agree(self, utc_ns: int) -> None:
-        """It is ``utc_ns`` at the station whose log this one follows, some time on the way ago: so
-        it is here.  Goes back where it must; what is given out meanwhile is in no log.
+        """Set the clock to ``utc_ns``, the time of the station whose log this one follows; its time
+        on the way is not counted.  The clock may go back by this; times that it has given out are
+        in no log.
         """
         with self._lock:
             offset_ns = utc_ns - self._clock.monotonic_ns()

@@ -1,6 +1,6 @@
-"""Trail encoder: units' trails as consoles get them, kept encoded.
+"""Trail encoder: keeps the trails of units encoded as consoles get them.
 
-A trail has up to 900 points and changes by one a second, so a point is encoded once, not again for
+A trail has up to 900 points and changes by one a second.  So a point is encoded once, not again for
 each console that joins: the thread that steps all positions does this.
 """
 
@@ -24,7 +24,9 @@ class TrailEncoder:
         self._encoded_trails: dict[str, _EncodedTrail] = {}
 
     def update_if_behind(self, unit: UnitState) -> None:
-        """Not far behind a trail that goes on: little is left to do when it is asked for."""
+        """Update the encoded trail if it is behind by some seconds, so that little is left to do
+        when it is asked for.
+        """
         if unit.trails.shown:
             self._of(unit.unit_id).update_if_behind(unit.trails.shown)
 
@@ -57,8 +59,8 @@ class _EncodedTrail:
             self.update(trail)
 
     def update(self, trail: list[TrailStep]) -> None:
-        """Update the encoded trail.  Steps are never changed, so comparing is cheap: they are the
-        same objects.
+        """Update the encoded trail.  Steps are never changed, so comparing is cheap: equal ones are
+        the same objects.
         """
         if trail == self._steps:
             return
@@ -82,12 +84,12 @@ class _EncodedTrail:
 
 
 def _encoded(steps: Sequence[TrailStep]) -> bytes:
-    """The points, without the brackets about them."""
+    """The encoded points, without the brackets of the list."""
     return encoded_trail(map(trail_point, steps))[1:-1]
 
 
 def trail_point(step: TrailStep) -> TrailPoint:
-    """As a console gets it: to a centimetre."""
+    """Point of a trail as consoles get it, to a centimetre."""
     return TrailPoint(
         step.t_ns // NS_PER_MS,
         round(step.north_m, 2),

@@ -25,7 +25,7 @@ _KEYS = {FusedPosition: FUSED.key(STATION_ID), AlarmChange: ALARM.key(STATION_ID
 
 
 class WriteAhead:
-    """``append_and_apply`` events; publishers and projector receive their outputs."""
+    """Write-ahead log in front of the pipeline; publishers and projector receive the outputs."""
 
     def __init__(
         self,
@@ -50,7 +50,7 @@ class WriteAhead:
         return self._pipeline.state.t_ns, self._events_at_t
 
     def rebuild(self, records: Iterable[Record], after: tuple[int, int]) -> int:
-        """Step the events of a log after a place; gives the number of events stepped.
+        """Step the pipeline with the events of a log after a position, and return their number.
 
         Decisions that a crash kept from the log are written to it now.
         """
@@ -80,12 +80,12 @@ class WriteAhead:
     def append_and_apply(
         self, t_ns: int, key: str, payload: bytes, *, urgent: bool = False
     ) -> list[Output]:
-        """Log and apply a record; gives the outputs."""
+        """Log and apply a record; return the outputs."""
         return self.append(self.event_of(t_ns, key, payload), key, payload, urgent=urgent)
 
     def append_or_fail(self, t_ns: int, key: str, payload: bytes) -> list[Output]:
-        """Append and apply an operator action, which exists nowhere else: it is not applied
-        where the log does not take it.  Raises StoreError then.
+        """Log and apply an operator action, which exists nowhere else.  Raises StoreError if the
+        log does not take it; then it is not applied.
         """
         event = self.event_of(t_ns, key, payload)
         self._urgent = True
@@ -100,13 +100,15 @@ class WriteAhead:
         return self._apply(event)
 
     def event_of(self, t_ns: int, key: str, payload: bytes) -> StationEvent:
-        """Station time never goes back, whatever the machine's clock does."""
+        """Decode a record to an event whose time is not before that of the last one, whatever the
+        machine's clock does.
+        """
         return event_of(max(t_ns, self._pipeline.state.t_ns), key, payload)
 
     def append(
         self, event: StationEvent, key: str, payload: bytes, *, urgent: bool = False
     ) -> list[Output]:
-        """Log an event, then apply it; gives the outputs."""
+        """Log an event, then apply it; return the outputs."""
         self._urgent = self._urgent or urgent
         is_kept = self._log.write(event.t_ns, key, payload)
         outputs = self._apply(event)
@@ -115,7 +117,7 @@ class WriteAhead:
         return outputs
 
     def flush_urgent(self) -> None:
-        """Bring urgent records to the disk before their outputs are published."""
+        """Flush urgent records to disk before their outputs are published."""
         if self._urgent:
             self._urgent = False
             self._log.flush()

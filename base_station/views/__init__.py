@@ -1,1 +1,3 @@
-"""Structs of what a console shows, and their making from the live state."""
+"""Structs that describe what a console shows, and the functions that make them from the live
+state.
+"""

@@ -1,4 +1,4 @@
-"""Parameters of an alarm's sentence, with names in the place of references."""
+"""Parameters of an alarm's sentence, with names in place of references to people."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def parameters_view(parameters: AlarmParameters, people: PersonLookup) -> AlarmP
 
 
 def stored_parameters_view(stored: str, people: PersonLookup) -> AlarmParametersView:
-    """Parameters from the JSON in the tables."""
+    """Return the parameters that the tables have as JSON."""
     return named_parameters(msgspec.json.decode(stored, type=AlarmParametersView), people)
 
 
 def named_parameters(parameters: AlarmParametersView, people: PersonLookup) -> AlarmParametersView:
-    """The parameters of a recording as they are shown."""
+    """Return the parameters with the names of people in place of references."""
     named = {
         name: shown_text(text, people)
         for name in _TEXTS

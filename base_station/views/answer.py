@@ -1,4 +1,4 @@
-"""Base of the structs that the console is shown and the API answers with."""
+"""Base of the structs that consoles are sent and the API answers with."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from shared.clock import NS_PER_MS
 
 
 class Answer(msgspec.Struct, frozen=True):
-    """A struct that a route may return as it is: pydantic, and with it the OpenAPI document, learn
-    its fields here.
+    """Struct that a route can return: pydantic, and so the OpenAPI document, read its fields from
+    here.
     """
 
     @classmethod
@@ -37,7 +37,7 @@ def _default(field: msgspec.structs.FieldInfo) -> object:
 
 
 def to_ms(t_ns: int) -> int:
-    """Since 1970, as all times of the API."""
+    """Return milliseconds since 1970, as in all times of the API."""
     return t_ns // NS_PER_MS
 
 

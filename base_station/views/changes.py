@@ -1,4 +1,4 @@
-"""Changed fields of units instead of whole units, and several such messages as one."""
+"""Changed fields of units in place of whole units, and the merging of such messages."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _KEPT_MERGED = 16  # slow consoles that are about as slow get the same
 
 
 class UnitChanges:
-    """Every unit as it was last given to all consoles, and its changes since."""
+    """State of every unit as all consoles know it, from which its changes are found."""
 
     def __init__(self) -> None:
         self._known: dict[str, UnitChange] = {}
 
     def of(self, delta: Delta) -> FieldDelta:
-        """The delta with the changed fields of its units."""
+        """Return the delta with the changed fields of its units."""
         return FieldDelta(
             seq=delta.seq,
             after_seq=delta.seq - 1,
@@ -39,7 +39,9 @@ class UnitChanges:
         )
 
     def note_snapshot(self, snapshot: Snapshot) -> None:
-        """Some consoles were given it: what it shows otherwise is given whole the next time."""
+        """Forget the units that differ in a snapshot: some consoles know them from it, others do
+        not, so that the next delta must have them whole.
+        """
         now = {unit.unit_id: msgspec.to_builtins(unit) for unit in snapshot.units}
         self._known = {
             unit_id: known for unit_id, known in self._known.items() if now.get(unit_id) == known
@@ -59,14 +61,14 @@ class UnitChanges:
 
 @lru_cache(_KEPT_MERGED)
 def merged_messages(messages: tuple[bytes, ...]) -> bytes:
-    """Encoded ``FieldDelta`` that follow each other, as one."""
+    """Merge encoded ``FieldDelta`` messages that follow each other into one."""
     return msgspec.json.encode(
         merged([msgspec.json.decode(message, type=FieldDelta) for message in messages])
     )
 
 
 def merged(several: Sequence[FieldDelta]) -> FieldDelta:
-    """Changes that follow each other, as one."""
+    """Merge changes that follow each other into one."""
     first, last = several[0], several[-1]
     units: dict[str, UnitChange] = {}
     for one in several:
@@ -92,7 +94,7 @@ def _latest(values: Sequence[Any]) -> Any:
 
 
 def _passed(several: Sequence[FieldDelta]) -> Mapping[str, tuple[TrailPoint, ...]]:
-    """Places of units in all of them but the last, which has its own."""
+    """Positions of units in all of the messages but the last, whose positions it has itself."""
     passed: dict[str, tuple[TrailPoint, ...]] = {}
     for one in several[:-1]:
         for unit_id, change in one.units.items():
@@ -107,7 +109,7 @@ def _passed(several: Sequence[FieldDelta]) -> Mapping[str, tuple[TrailPoint, ...
 
 
 def _difference(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of ``now`` that are others than before."""
+    """Fields of ``now`` whose values differ from those before."""
     return {
         name: _difference(before[name], value)
         if isinstance(value, dict) and isinstance(before[name], dict)
@@ -118,7 +120,7 @@ def _difference(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, 
 
 
 def _both(change: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:
-    """One change that does what both do, one after the other."""
+    """Merge two changes that follow each other."""
     nested = {
         name: _both(change[name], value)
         for name, value in later.items()

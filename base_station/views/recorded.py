@@ -1,5 +1,5 @@
-"""Console messages as the log keeps them: those of ``wire``, with references in the place of names,
-and the points that were added to trails.
+"""Console messages as the log stores them: those of ``wire``, with references in place of names,
+and with the points that were added to trails.
 """
 
 from __future__ import annotations
@@ -39,14 +39,16 @@ _SNAPSHOTS: Final = msgspec.json.Decoder(_EncodedSnapshot)
 
 
 def read_snapshot(encoded: bytes) -> Snapshot:
-    """Raises msgspec.MsgspecError."""
+    """Decode a snapshot.  Raises msgspec.MsgspecError."""
     values = msgspec.structs.asdict(_SNAPSHOTS.decode(encoded))
     plan = bytes(values.pop("plan"))
     return Snapshot(**values, plan=None if plan == b"null" else msgspec.Raw(plan))
 
 
 def reference_person(person_id: str) -> KnownPerson:
-    """The ``PersonLookup`` of what is recorded: the log has no names."""
+    """``PersonLookup`` for recording, which gives the reference as the name: the log has no
+    names.
+    """
     return KnownPerson(reference_to(person_id))
 
 
@@ -57,7 +59,9 @@ def named_unit(unit: UnitView, people: PersonLookup) -> UnitView:
 
 
 def _named_person(person: PersonView, people: PersonLookup) -> PersonView:
-    """A log of an earlier version has the name of then."""
+    """Person with the present name; a log of an earlier version has the name of its time, which
+    stays.
+    """
     known = people(person.person_id)
     if person.name != reference_to(person.person_id):
         return msgspec.structs.replace(person, photo_url=known.photo_url)

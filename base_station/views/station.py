@@ -1,4 +1,4 @@
-"""The live state as the console sees it, in the structs of ``wire``; units: ``units``."""
+"""The live state as consoles show it, in the structs of ``wire``. Units are in ``units``."""
 
 from __future__ import annotations
 
@@ -46,7 +46,9 @@ _EXTERNAL_KINDS = {ExternalKind.PERSON: "person", ExternalKind.EMERGENCY: "emerg
 
 
 class StationFacts(msgspec.Struct, frozen=True):
-    """Facts of the station's surroundings that the engine adds, for health."""
+    """State of the station's parts outside of the live state, which the engine adds to the
+    health.
+    """
 
     problems: tuple[str, ...] = ()  # beside those in the live state
     log_bytes: int = 0
@@ -172,7 +174,7 @@ def _offered_view(dispatch: Dispatch, people: PersonLookup) -> DispatchView:
 
 
 def pin_views(state: StationState, people: PersonLookup) -> tuple[PinView, ...]:
-    """All pins, of each site in the order of setting."""
+    """Pins of all sites, those of each site in the order in which they were set."""
     return tuple(
         _pin_view(site, pin, people) for site in state.sites.values() for pin in site.pins.values()
     )
@@ -224,7 +226,9 @@ def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView,
 
 
 def external_views(state: StationState) -> tuple[ExternalMarkerView, ...]:
-    """On the plan of each site; without an anchor the places on it are unknown."""
+    """Markers of other teams on the plan of each site; a site without an anchor has none, as their
+    places on its plan are unknown.
+    """
     anchors = ((site_id, site.anchor) for site_id, site in state.sites.items())
     return tuple(
         _external_view(site_id, anchor, marker)
@@ -307,7 +311,7 @@ def snapshot(
     people: PersonLookup,
     replay: ReplayView | None = None,
 ) -> Snapshot:
-    """Everything that a console shows but trails."""
+    """Everything that a console shows, except trails."""
     still_open = [alarm for alarm in state.alarms.values() if alarm.is_open]
     shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
     incident = state.shown_incident

@@ -1,4 +1,4 @@
-"""Views of what the tables have of units."""
+"""Views of units from the tables."""
 
 from __future__ import annotations
 
@@ -11,5 +11,7 @@ from base_station.views.wire import WornSensorView
 
 
 def stored_sensors(unit: Unit) -> tuple[WornSensorView, ...]:
-    """Sensors of a unit as it has described itself last; none: of an earlier version's table."""
+    """Sensors of a unit according to its newest description; none in a table of an earlier
+    version.
+    """
     return worn_sensor_views(msgspec.json.decode(unit.sensors, type=tuple[DescribedSensor, ...]))

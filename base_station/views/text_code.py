@@ -1,4 +1,4 @@
-"""Code of a text as the API and the live wire have it."""
+"""Code of a text as the API and the live messages carry it."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from shared.coded_text import TextCode
 
 
 def text_code_view_or_none(code: TextCode) -> TextCodeView | None:
-    """None where the text has no code."""
+    """Return the view of a code; None if the text has no code."""
     return text_code_view(code) if code.code else None
 
 
 def text_code_views(code: TextCode) -> tuple[TextCodeView, ...]:
-    """The view of it, or none where the text has no code."""
+    """Return the view of a code in a tuple; an empty one if the text has no code."""
     return (text_code_view(code),) if code.code else ()
 
 

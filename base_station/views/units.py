@@ -1,4 +1,4 @@
-"""Units' cards and places as the console sees them, in the structs of ``wire``."""
+"""Units as consoles show them on cards and on the plan, in the structs of ``wire``."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _trust_view(trust: Trust) -> TrustView:
 
 @lru_cache(maxsize=1000)  # findings are mostly the same, and each change of a unit shows them
 def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightView | None:
-    """Findings of the self-check in one text; None: the unit has not checked itself."""
+    """Findings of the unit's self-check in one text; None if the unit has not checked itself."""
     if findings is None:
         return None
     if not findings:
@@ -165,7 +165,7 @@ def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:
 
 
 def person_view(person: Person, people: PersonLookup) -> PersonView:
-    """The name of now; a log of an earlier version has that of then."""
+    """Person with the present name; a log of an earlier version has the name of its time."""
     known = people(person.person_id)
     shown: KnownPerson | Person = person if person.name else known
     return PersonView(

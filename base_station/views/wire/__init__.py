@@ -1,21 +1,20 @@
-"""Messages to the console over the WebSocket ``/api/v1/live``: a snapshot, then what changes.
+"""Messages to the console over the WebSocket ``/api/v1/live``: a snapshot, then its changes.
 
-Both carry ``seq``; a delta whose ``seq`` is not the last one plus one means that the console
-missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).  The trails that
-were behind the units at the snapshot come one by one, whenever no delta has to go out.
+Both carry ``seq``; a delta whose ``seq`` is not the last one plus one means that the console missed
+something and must ask for a snapshot (send ``{"type": "snapshot"}``). Trails from before the
+snapshot follow one by one, whenever no delta waits.
 
-``/api/v1/live`` gives ``Delta`` messages, with each changed unit whole.  With ``?deltas=fields``
-it gives ``FieldDelta`` instead, with the fields that changed.  Who asks for these also confirms
-what was shown: it sends ``{"type": "shown", "count": N}``, where N is the number of messages that
-it got over this connection, of any type, and is done with.  Until the last snapshot or delta is
-confirmed, changes are merged; the next ``FieldDelta`` has all of them, and names in ``after_seq``
-the message that it follows.  Messages are compressed where the console offers it
+``/api/v1/live`` gives ``Delta`` messages, with each changed unit whole.  With ``?deltas=fields`` it
+gives ``FieldDelta`` instead, with the fields that changed.  A console that asks for these also
+confirms what it has shown: it sends ``{"type": "shown", "count": N}``, where N is the number of
+messages of any type that it has received over this connection and shown.  Until the last snapshot
+or delta is confirmed, changes are merged; the next ``FieldDelta`` has all of them, and names in
+``after_seq`` the message that it follows.  Messages are compressed if the console offers it
 (permessage-deflate).
 
-Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
-Positions are metres north, east and down in the incident frame.  The console's
-``src/wire/`` and the page ``docs/live.md`` are generated from these types (``python -m
-tests.rig.console_types``).
+Times are milliseconds since 1970 (station time; in a replay, the time of the incident). Positions
+are metres north, east and down in the incident frame.  The console's ``src/wire/`` and the page
+``docs/live.md`` are generated from these types (``python -m tests.rig.console_types``).
 """
 
 from __future__ import annotations

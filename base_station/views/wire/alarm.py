@@ -8,7 +8,9 @@ from base_station.views.answer import Answer
 
 
 class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
-    """Amounts and names in the sentence of an alarm; what is not in it is left out."""
+    """Quantities and names in the sentence of an alarm; those that the sentence does not contain
+    are left out.
+    """
 
     member: str | None = None  # its wearer, or the unit where it is not worn
     member_before: str | None = None  # the former wearer, where it may concern that person

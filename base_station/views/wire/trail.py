@@ -1,4 +1,4 @@
-"""Trail of a unit, as a console is sent it."""
+"""Trail of a unit as consoles get it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ POINTS: Final = shown_as("TrailPoint[]", {"type": "array", "items": {"$ref": "#/
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
-    """One point of a trail, at most one a second: ``[t_ms, north_m, east_m, floor]``, and behind a
-    gap a fifth element, 1.  Of older points those that lie on one line are left out.
+    """Point of a trail, at most one a second: ``[t_ms, north_m, east_m, floor]``, and after a gap a
+    fifth element, 1. Older points on one straight line are left out.
     """
 
     t_ms: int
@@ -27,7 +27,9 @@ class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
 
 
 def encoded_trail(points: Iterable[TrailPoint]) -> bytes:
-    """Without the fifth element where there is no gap: trails are most of what is sent."""
+    """Encode a trail, without the fifth element where there is no gap: trails are most of what is
+    sent.
+    """
     rows = [
         (one.t_ms, one.north_m, one.east_m, one.floor, *([1] if one.after_gap else []))
         for one in points
@@ -36,7 +38,7 @@ def encoded_trail(points: Iterable[TrailPoint]) -> bytes:
 
 
 class Trail(msgspec.Struct, frozen=True, tag="trail"):
-    """Trail of a unit before the last snapshot; deltas since then have gone on from there."""
+    """Trail of a unit before the last snapshot; deltas since then continue it."""
 
     unit_id: str
     points: Annotated[msgspec.Raw, POINTS]

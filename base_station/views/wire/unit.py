@@ -65,7 +65,7 @@ class PositionView(Answer, frozen=True):
 
 
 class DutyView(Answer, frozen=True):
-    """While an incident is open: how the member's PAR stands, and work and rest."""
+    """State of the member's PAR, work and rest while an incident is open."""
 
     checked_in_ms: int | None  # at the last PAR confirmation; None: not yet confirmed
     checked_in_by: str  # self: the member; radio: who entered it; empty: not yet confirmed
@@ -81,7 +81,7 @@ class DutyView(Answer, frozen=True):
 
 
 class TrustView(Answer, frozen=True):
-    """Trust in the place of a unit, as a light."""
+    """Trust in the position of a unit, as a traffic light."""
 
     level: Annotated[str, one_of("green", "amber", "red")]
     reason: str  # for a person; empty: green
@@ -90,7 +90,7 @@ class TrustView(Answer, frozen=True):
 
 
 class PreflightView(Answer, frozen=True):
-    """Findings of a unit's self-check at its start."""
+    """Findings of the self-check that a unit makes at its start."""
 
     level: Annotated[str, one_of("ok", "warning", "failed")]
     text: str  # for a person, the gravest first; empty: ok
@@ -99,7 +99,7 @@ class PreflightView(Answer, frozen=True):
 
 
 class WornSensorView(Answer, frozen=True):
-    """Inertial sensor of a unit, and where its wearer has it."""
+    """Inertial sensor of a unit, and where it is worn."""
 
     name: str  # in the unit; empty: its only one
     place: str  # part of the body, such as left_foot; empty: unknown
@@ -116,7 +116,7 @@ class ClockView(Answer, frozen=True):
 
 
 class UnitView(Answer, frozen=True):
-    """Everything a card and the plan show of one unit; a delta carries it whole."""
+    """State of one unit on its card and on the plan; a delta carries it whole."""
 
     unit_id: str
     label: str
