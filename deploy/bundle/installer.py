@@ -52,13 +52,6 @@ def main(archive: Path, arguments: list[str]) -> None:
     print(f"Services, examples and rules: {options.target}/share/muster/{DEPLOY}")
 
 
-def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description="Install Muster from this file, with no network.")
-    parser.add_argument("--target", type=Path, default=Path("/opt/muster"), help="where to")
-    parser.add_argument("--verify", action="store_true", help="check the file, install nothing")
-    return parser.parse_args(arguments)
-
-
 def verify(bundle: zipfile.ZipFile) -> str:
     """The version; raises InstallError where a file is missing, another, or one too many."""
     expected = {}

@@ -10,6 +10,7 @@ BENCHES = {
     "activity": "tests.bench.tracker.activity:bench_activity",
     "aids": "tests.bench.tracker.aiding_sensors:bench_aids",
     "archive": "tests.bench.archive.command:bench_archive",
+    "archive-outage": "tests.bench.archive.outage:bench_archive_outage",
     "backfill": "tests.bench.backfill:bench_backfill",
     "bus": "tests.bench.bus.command:bench_bus",
     "console": "tests.bench.console.command:bench_console",

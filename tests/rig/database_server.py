@@ -1,4 +1,5 @@
-"""A real PostgreSQL server in a folder of its own, on a Unix socket, that can be killed and frozen.
+"""A real PostgreSQL server in a folder of its own, that can be killed and frozen: on a Unix socket,
+and on this machine's loopback, there with a certificate where it has one.
 
 It ends with the test, also where that is killed: its processes get SIGTERM when this one ends.
 """
@@ -23,7 +24,9 @@ import pytest
 from sqlalchemy import create_engine, text
 from sqlalchemy.exc import OperationalError
 
+from base_station.security.pki.certificates import Issued
 from base_station.storage.db.server_address import SCHEME, ServerAddress
+from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 
 OWNER = "fire"
@@ -45,6 +48,7 @@ class DatabaseServer:
         self._data, self._password = folder / "data", secrets.token_hex(16)
         user = pwd.getpwnam("nobody") if os.geteuid() == 0 else pwd.getpwuid(os.geteuid())
         self._user, self._group = user.pw_uid, user.pw_gid
+        self.port = free_port()
         self._running: subprocess.Popen[bytes] | None = None
         password = folder / "password"
         password.write_text(f"{self._password}\n")
@@ -55,10 +59,12 @@ class DatabaseServer:
         options = ("--no-sync", "--encoding", "UTF8", "--locale", "C.UTF-8")
         self._program("initdb", "-D", str(self._data), *make, *options).wait(120)
 
-    def start(self) -> None:
-        """Takes connections when this returns."""
+    def start(self, certificate: Issued | None = None) -> None:
+        """Takes connections when this returns.  ``certificate``: for TLS, on the loopback."""
         settings = {
-            "listen_addresses": "",
+            **self._tls_settings(certificate),
+            "listen_addresses": "127.0.0.1",
+            "port": str(self.port),
             "unix_socket_directories": str(self._folder),
             "max_connections": "60",
             "shared_buffers": "16MB",
@@ -111,7 +117,7 @@ class DatabaseServer:
         return ServerAddress(self.url(name, user), str(password))
 
     def url(self, name: str, user: str = OWNER) -> str:
-        return f"{SCHEME}://{user}@/{name}?host={self._folder}"
+        return f"{SCHEME}://{user}@/{name}?host={self._folder}&port={self.port}"
 
     def execute(self, statement: str, database: str = "postgres") -> None:
         """As the administrator, outside of a transaction."""
@@ -130,6 +136,22 @@ class DatabaseServer:
     def printed(self) -> str:
         """Log of the server, with every statement."""
         return (self._folder / "postgres.txt").read_text(errors="replace")
+
+    def _tls_settings(self, certificate: Issued | None) -> dict[str, str]:
+        if certificate is None:
+            return {}
+        files = {
+            "ssl_cert_file": self._folder / "server.pem",
+            "ssl_key_file": self._folder / "server.key",
+        }
+        contents = (certificate.certificate_pem(), certificate.key_pem())
+        for path, content in zip(files.values(), contents, strict=True):
+            path.write_bytes(content)
+            path.chmod(0o600)  # the server refuses a key that others may read
+            if os.geteuid() == 0:
+                os.chown(path, self._user, self._group)
+        named = {name: str(path) for name, path in files.items()}
+        return {"ssl": "on", **named}
 
     def _takes_connections(self) -> bool:
         try:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 
+from shared.coded_text import coded
 from shared.errors import DatabaseAwayError, DiskFullError, StoreError
 
 
@@ -38,11 +39,46 @@ def store_error(error: SQLAlchemyError, what: str) -> StoreError:
     code = str(getattr(cause, "sqlstate", None) or "")
     reason = str(cause).strip().partition("\n")[0] or type(cause).__name__
     if is_away(error):
-        return DatabaseAwayError(f"the database server does not answer ({reason})")
+        return DatabaseAwayError(_unreachable(reason))
     for one in _REMEDIES:
         if code.startswith(one.codes):
             return one.kind(f"{what}: {reason}; {one.remedy}")
     return StoreError(f"{what}: {reason}")
+
+
+def _unreachable(reason: str) -> str:
+    """Text for a person.  libpq gives no code for what it finds wrong in a certificate."""
+    if "does not match host name" in reason:
+        return coded(
+            "database-certificate-name",
+            "the database server has a certificate for another name ({reason}): write the name "
+            "that it is for in the address, or give the server one for its name",
+            reason=reason,
+        )
+    if "certificate verify failed" in reason:
+        return coded(
+            "database-certificate-refused",
+            "the certificate of the database server is not accepted ({reason}): it has expired, "
+            "is not valid yet, or is of another authority than that of sslrootcert in the "
+            "address; see its dates (openssl x509 -noout -dates -issuer) and this machine's clock",
+            reason=reason,
+        )
+    if "root certificate file" in reason:
+        return coded(
+            "database-authority-unread",
+            "the authority of the database server's certificate cannot be read ({reason}): give "
+            "its certificate, as PEM, in sslrootcert in the address",
+            reason=reason,
+        )
+    if "does not support SSL" in reason:
+        return coded(
+            "database-unencrypted",
+            "the database server has no certificate ({reason}): turn on ssl at the server",
+            reason=reason,
+        )
+    return coded(
+        "database-unreachable", "the database server does not answer ({reason})", reason=reason
+    )
 
 
 def is_away(error: SQLAlchemyError) -> bool:

@@ -23,7 +23,7 @@ from base_station.storage.db.models import Base
 from base_station.storage.db.server_address import ServerAddress
 from base_station.storage.db.server_engine import STATION_LOCK, STATION_WAIT_S, server_engines
 from base_station.storage.db.server_errors import is_away, store_error
-from shared.coded_text import coded, join_texts
+from shared.coded_text import coded, join_texts, text_of_error
 from shared.errors import DatabaseAwayError, StoreError
 
 _log = logging.getLogger(__name__)
@@ -190,7 +190,7 @@ class ServerStore:
         except SQLAlchemyError as error:
             refusal = store_error(error, what)
             if isinstance(refusal, DatabaseAwayError):
-                self._note_away(str(refusal))
+                self._note_away(text_of_error(refusal))
                 raise DatabaseAwayError(self.problem) from error
             raise refusal from error
         if is_trying:

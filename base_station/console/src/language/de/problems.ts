@@ -28,6 +28,15 @@ export const problem: Part<"problem"> = {
     "Das Zertifikat der Konsole gilt nicht für {name}, sodass Browser davor warnen: mit „muster pki renew-station --host {name}“ und --host für jeden weiteren Namen und jede Adresse ein neues erstellen",
   "console-not-announced":
     "Browser finden diese Konsole nicht als {name}: {error}",
+  "database-authority-unread":
+    "das Zertifikat der Stelle, die das des Datenbankservers ausstellte, ist nicht lesbar ({reason}): es als PEM in sslrootcert der Adresse angeben",
+  "database-certificate-name":
+    "das Zertifikat des Datenbankservers gilt für einen anderen Namen ({reason}): den Namen in die Adresse schreiben, für den es gilt, oder dem Server eines für seinen Namen geben",
+  "database-certificate-refused":
+    "das Zertifikat des Datenbankservers wird nicht angenommen ({reason}): Es ist abgelaufen, noch nicht gültig, oder von einer anderen Stelle als der in sslrootcert der Adresse; seine Daten (openssl x509 -noout -dates -issuer) und die Uhr dieses Rechners prüfen",
+  "database-unencrypted":
+    "der Datenbankserver hat kein Zertifikat ({reason}): ssl am Server einschalten",
+  "database-unreachable": "der Datenbankserver antwortet nicht ({reason})",
   "database-away":
     "{reason}; Personen werden wie bisher gezeigt und geführt, und die Aufzeichnung hat alles; Anmeldungen, frühere Einsätze, Benutzer und Personen warten auf die Datenbank; prüfen, ob der Server läuft und erreichbar ist",
   "database-catching-up":

@@ -26,6 +26,15 @@ export const problem = {
     "The certificate of the console does not stand for {name}, so that browsers warn of it: make one that does with “muster pki renew-station --host {name}”, and --host for each other name and address",
   "console-not-announced":
     "Browsers do not find this console as {name}: {error}",
+  "database-authority-unread":
+    "the authority of the database server's certificate cannot be read ({reason}): give its certificate, as PEM, in sslrootcert in the address",
+  "database-certificate-name":
+    "the database server has a certificate for another name ({reason}): write the name that it is for in the address, or give the server one for its name",
+  "database-certificate-refused":
+    "the certificate of the database server is not accepted ({reason}): it has expired, is not valid yet, or is of another authority than that of sslrootcert in the address; see its dates (openssl x509 -noout -dates -issuer) and this machine's clock",
+  "database-unencrypted":
+    "the database server has no certificate ({reason}): turn on ssl at the server",
+  "database-unreachable": "the database server does not answer ({reason})",
   "database-away":
     "{reason}; people are shown and commanded as before, and the log has everything; logins, past incidents, users and people wait for the database; see that the server runs and can be reached",
   "database-catching-up":

@@ -28,6 +28,15 @@ export const problem: Part<"problem"> = {
     "Le certificat de la console ne vaut pas pour {name}, et les navigateurs avertissent : en créer un avec « muster pki renew-station --host {name} », et --host pour chaque autre nom et adresse",
   "console-not-announced":
     "Les navigateurs ne trouvent pas cette console sous {name} : {error}",
+  "database-authority-unread":
+    "le certificat de l’autorité qui a émis celui du serveur de base de données est illisible ({reason})\u00a0: le donner au format PEM dans sslrootcert de l’adresse",
+  "database-certificate-name":
+    "le certificat du serveur de base de données vaut pour un autre nom ({reason})\u00a0: écrire dans l’adresse le nom pour lequel il vaut, ou donner au serveur un certificat pour son nom",
+  "database-certificate-refused":
+    "le certificat du serveur de base de données n’est pas accepté ({reason})\u00a0: il a expiré, n’est pas encore valable, ou vient d’une autre autorité que celle de sslrootcert dans l’adresse\u00a0; vérifier ses dates (openssl x509 -noout -dates -issuer) et l’horloge de cette machine",
+  "database-unencrypted":
+    "le serveur de base de données n’a pas de certificat ({reason})\u00a0: activer ssl sur le serveur",
+  "database-unreachable": "le serveur de base de données ne répond pas ({reason})",
   "database-away":
     "{reason} ; les personnes sont affichées et commandées comme avant, et le journal a tout ; connexions, interventions passées, utilisateurs et personnes attendent la base de données ; vérifier que le serveur fonctionne et est joignable",
   "database-catching-up":
