@@ -20,6 +20,7 @@ from base_station.storage.job_queue import JobList
 from shared.channels import STATUS, Direction, backfilled_key, channel_of
 from shared.clock import SystemClock
 from shared.codec import encode
+from shared.coded_text import code_of_text
 from shared.errors import UserError
 from shared.mcap_log import SegmentReader, is_derived, read_log, segment_paths
 from shared.messages import (
@@ -63,6 +64,19 @@ def test_no_byte_is_left_of_a_person(scenario: ErasureScenario) -> None:
     assert len(of_bo) < len([one for one in fused_in(scenario) if one.unit_id == "FF-02"])
     actions = [e.message.action for e in scenario.events() if isinstance(e.message, OperatorAction)]
     assert not any(isinstance(action, SetPin | SetStart) for action in actions)
+
+
+@pytest.mark.parametrize(("subject", "stay"), [("p-77", True), ("i1", False)])
+def test_answer_names_files_that_were_brought_in_and_stay(
+    tmp_path: Path, subject: str, stay: bool
+) -> None:
+    scenario = ErasureScenario(tmp_path / "station", older=False)
+    brought_in = scenario.folder / "imports" / "i1" / "a.original"
+    brought_in.parent.mkdir(parents=True)
+    brought_in.write_bytes(b"track")
+    done = station_app.forget(scenario.folder, subject, lambda _: None, lambda _: None)
+    assert brought_in.exists() is stay
+    assert ["erasure-imports-kept"] * stay == [code_of_text(one).code for one in done.kept]
 
 
 def pieces(photo: bytes) -> list[bytes]:
