@@ -284,11 +284,19 @@ def plan() -> None:
 
 
 @app.command("compile", rich_help_panel=_OPERATION)
-def compile_() -> None:
+def compile_(
+    *,
+    one_process: Annotated[
+        bool,
+        typer.Option(
+            "--one-process", help="All of them in one process: quicker, and needs more memory."
+        ),
+    ] = False,
+) -> None:
     """Compile the trackers now, so that the first start is quick."""
     from edge.app.jit_warmup import compile_trackers  # noqa: PLC0415
 
-    compile_trackers()
+    compile_trackers(one_process=one_process)
 
 
 def _sensor_tables(given: list[str] | None) -> list[dict[str, str]] | None:

@@ -75,7 +75,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         stamp.seek(0)
         if stamp.read() == digest.hexdigest():
             return
-        command = [sys.executable, "-m", "shared.command_line", "edge", "compile"]
+        command = [sys.executable, "-m", "shared.command_line", "edge", "compile", "--one-process"]
         if subprocess.run(command, cwd=PROJECT_ROOT, check=False).returncode == 0:  # else tests say
             stamp.truncate(0)
             stamp.write(digest.hexdigest())

@@ -57,7 +57,7 @@ def _random_header(chance: random.Random, unit_id: str, seq: int) -> bytes:
     header = wire.header
     _fill(chance, header, depth=0)
     header.unit_id, header.schema, header.seq = unit_id, SCHEMA_REVISION, seq
-    header.boot_id = 0xB007 if chance.random() < 0.75 else chance.getrandbits(64)
+    header.boot_id = 0xB007 if chance.random() < 0.95 else chance.getrandbits(64)
     return wire.SerializeToString()
 
 

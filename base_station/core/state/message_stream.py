@@ -126,4 +126,7 @@ class MessageStream(msgspec.Struct):
     def _known_boot(self, boot_id: int) -> BootState | None:
         if self.boots and self.boots[-1].boot_id == boot_id:
             return self.boots[-1]
-        return next((boot for boot in reversed(self.boots) if boot.boot_id == boot_id), None)
+        for boot in reversed(self.boots):  # of every message: a generator takes twice the time
+            if boot.boot_id == boot_id:
+                return boot
+        return None

@@ -10,7 +10,6 @@ import msgspec
 from base_station.app.factories import project_whole_log
 from base_station.replay.rehearsal.report import RehearsalReport
 from base_station.storage.db.store import Store
-from edge.app.jit_warmup import compile_trackers
 from shared.errors import LogError
 from shared.mcap_log import segment_paths
 from shared.messages.station import Assign, CloseIncident, OpenIncident
@@ -56,7 +55,6 @@ def remove_log(data: Path, kept: int = 0) -> None:
 
 
 def test_rerun_of_an_archived_incident_equals_the_one_with_its_log(tmp_path: Path) -> None:
-    compile_trackers()
     data = write_incident(tmp_path, {"FF-01": "search-ground-floor?seed=1"}, 30.0)
     note_tables(data)
     archive = tmp_path / "archive"

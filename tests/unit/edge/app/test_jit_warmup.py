@@ -130,6 +130,21 @@ def test_a_tracker_is_compiled_in_a_process_of_its_own(monkeypatch: pytest.Monke
     assert compiled_signatures() == before
 
 
+@pytest.mark.parametrize(("one_process", "tasks"), [(False, 1), (True, None)])
+def test_memory_is_free_again_after_each_tracker_unless_one_process_does_all(
+    monkeypatch: pytest.MonkeyPatch, *, one_process: bool, tasks: int | None
+) -> None:
+    asked: list[object] = []
+
+    def make(*_: object, max_tasks_per_child: int | None) -> RecordingExecutor:
+        asked.append(max_tasks_per_child)
+        return RecordingExecutor()
+
+    monkeypatch.setattr(jit_warmup, "ProcessPoolExecutor", make)
+    compile_trackers(one_process=one_process)
+    assert asked == [tasks]
+
+
 def test_a_killed_process_is_reported_with_its_tracker(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jit_warmup, "ProcessPoolExecutor", RecordingExecutor(killed="two_feet"))
     with pytest.raises(UserError, match=r"'two_feet' was killed.*add swap"):
