@@ -94,20 +94,11 @@ def text_of_error(error: Exception) -> str:
     return first if isinstance(first, CodedText) else str(error)
 
 
-def text_with_code(text: str, code: TextCode) -> str:
-    """The text, as it was before its code and it were sent apart."""
-    if code == NO_CODE:
-        return text
-    again = CodedText(text)
-    again.code = code
-    return again
-
-
 def map_texts(text: str, change: Callable[[str], str]) -> str:
     """The text as ``change`` makes it, and so the texts among its parameters."""
     code = code_of_text(text)
     texts = {name: change(one) for name, one in code.texts.items()}
-    return text_with_code(change(text), msgspec.structs.replace(code, texts=texts))
+    return with_code(change(text), msgspec.structs.replace(code, texts=texts))
 
 
 def join_texts(texts: Iterable[str]) -> str:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from base_station.replay.processes import wire
+from base_station.replay.processes import jobs
 from base_station.replay.processes.projection_process import ProjectionProcess
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.data_folder import DataFolder
@@ -52,7 +52,7 @@ class CatchUp:
         if missing is None:
             return
         self._prepare()
-        job = wire.CatchUpJob(
+        job = jobs.CatchUpJob(
             log=str(self._folder.log),
             checkpoints=str(self._folder.checkpoints),
             database=str(self._folder.database),

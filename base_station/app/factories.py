@@ -12,8 +12,8 @@ from base_station.app.first_login import USERNAME, ensure_administrator
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.log_feed import FolderFeed
 from base_station.replay.playback import Archive
+from base_station.replay.processes.jobs import ArchivedLog
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
-from base_station.replay.processes.wire import ArchivedLog
 from base_station.replay.rebuild import project_log
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.accounts import Accounts

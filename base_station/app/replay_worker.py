@@ -17,6 +17,19 @@ from base_station.fusion.smoothing import SMOOTHERS
 from base_station.radio.radio_log import RadioLog
 from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import (
+    ArchivedLog,
+    ArchiveJob,
+    CatchUpJob,
+    Job,
+    PostProcessingJob,
+    RehearsalJob,
+    ReplayJob,
+    ReportJob,
+    TimelineJob,
+    read_job,
+)
 from base_station.replay.processes.post_processing_work import (
     StationTime,
     bounded,
@@ -26,25 +39,14 @@ from base_station.replay.processes.post_processing_work import (
 )
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
-    ArchivedLog,
-    ArchiveJob,
-    CatchUpJob,
     CaughtUp,
     CopiesDone,
     CopyFrame,
     Damage,
     Failure,
-    FrameChannel,
-    Job,
-    PostProcessingJob,
     RehearsalFrame,
-    RehearsalJob,
-    ReplayJob,
     ReportFrame,
-    ReportJob,
     TimelineFrame,
-    TimelineJob,
-    read_job,
 )
 from base_station.replay.rehearsal.rehearse import Rehearser
 from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from base_station.app.factories import Announce, note_segments
 from base_station.app.offline_log import OfflineLog
-from base_station.replay.processes import wire
+from base_station.replay.processes import jobs
 from base_station.replay.processes.projection_process import ProjectionProcess
 from base_station.replay.processes.server import ReplayProcesses
 from shared.coded_text import coded, text_of_error
@@ -68,7 +68,7 @@ class TablesFromLog:
 
     def _make(self) -> float:
         given = self._offline_log
-        job = wire.CatchUpJob(
+        job = jobs.CatchUpJob(
             log=str(given.folder.log),
             checkpoints=str(given.scratch / "checkpoints"),
             database=str(given.database),

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from base_station.process import gc_tuning
-from base_station.replay.processes.wire import FrameChannel
+from base_station.replay.processes.frame_channel import FrameChannel
 from shared.log import set_up_logging
 
 _NICE = 10  # of copies: the live station goes before; loading is soon over

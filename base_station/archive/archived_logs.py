@@ -12,7 +12,7 @@ from base_station.archive.partly_archived import opened_copy, partly_archived
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import LogFeed, RecordSource
 from base_station.replay.incident_file import AFTER_NS
-from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
+from base_station.replay.processes.jobs import ArchivedLog, ArchivedPart
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records

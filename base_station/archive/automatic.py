@@ -15,12 +15,12 @@ from threading import Lock
 from base_station.archive.copying import closed_until_ns
 from base_station.archive.store import open_store
 from base_station.config import ArchiveConfig
-from base_station.replay.processes import wire
+from base_station.replay.processes import frame_channel, jobs, wire
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.views.text_code import text_code_view_or_none
 from base_station.views.wire import ArchiveView
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
-from shared.coded_text import code_of_text, coded, text_of_error, text_with_code
+from shared.coded_text import code_of_text, coded, text_of_error, with_code
 from shared.errors import ArchiveError, StoreError
 from shared.worker import Worker
 
@@ -34,7 +34,7 @@ _log = logging.getLogger(__name__)
 class ArchivingContext:
     """Parts of the station that it needs."""
 
-    start: Callable[[wire.ArchiveJob], wire.FrameChannel]  # a process for it
+    start: Callable[[jobs.ArchiveJob], frame_channel.FrameChannel]  # a process for it
     log: str
     database: str
     prepare: Callable[[], object]  # brings the data to be copied to the disk
@@ -59,7 +59,7 @@ class AutomaticArchive:
         self._copies, self._clock = copies, clock
         self._poll_interval_s = self._pause_s = poll_interval_s
         self._lock = Lock()  # guards the fields below
-        self._line: wire.FrameChannel | None = None  # to the process that is at work
+        self._line: frame_channel.FrameChannel | None = None  # to the process that is at work
         self._closed = False
         self._waiting = 0
         self._copied = 0
@@ -145,8 +145,8 @@ class AutomaticArchive:
             line.hang_up()
             line.close()
 
-    def _begin(self) -> wire.FrameChannel:
-        job = wire.ArchiveJob(
+    def _begin(self) -> frame_channel.FrameChannel:
+        job = jobs.ArchiveJob(
             log=self._place.log,
             database=self._place.database,
             location=self._config.location,
@@ -158,7 +158,7 @@ class AutomaticArchive:
             self._line = self._place.start(job)
             return self._line
 
-    def _follow(self, line: wire.FrameChannel) -> None:
+    def _follow(self, line: frame_channel.FrameChannel) -> None:
         while (encoded := line.receive()) is not None:
             match wire.read_archive_report(encoded):
                 case wire.CopyFrame(incident_id, damage):
@@ -166,7 +166,7 @@ class AutomaticArchive:
                 case wire.CopiesDone():
                     return
                 case wire.Failure() as failure:
-                    raise ArchiveError(text_with_code(failure.reason, failure.code))
+                    raise ArchiveError(with_code(failure.reason, failure.code))
                 case wire.Damage(what):
                     self._place.note_damage(what)
         raise StoreError(

@@ -9,7 +9,7 @@ from base_station.archive.catalogue import decoded_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import open_store
 from base_station.engine.log_feed import RecordSource
-from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
+from base_station.replay.processes.jobs import ArchivedLog, ArchivedPart
 from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.log_defects import LogDefects
 from base_station.storage.missing_segments import KnownSegment

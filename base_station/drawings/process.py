@@ -10,7 +10,7 @@ import sys
 import msgspec
 
 from base_station.drawings.draft import Draft, DrawingRefusal, Options
-from shared.coded_text import coded, text_with_code
+from shared.coded_text import coded, with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 60.0
@@ -46,5 +46,5 @@ def draft_of(content: bytes, options: Options) -> Draft:
         )
     answer = msgspec.json.decode(done.stdout, type=Draft | DrawingRefusal)
     if isinstance(answer, DrawingRefusal):
-        raise UserError(text_with_code(answer.reason, answer.code))
+        raise UserError(with_code(answer.reason, answer.code))
     return answer

@@ -27,7 +27,7 @@ from base_station.unit_sync.backfill import Report
 from base_station.views.station import StationFacts
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
-from shared.coded_text import text_with_code
+from shared.coded_text import with_code
 from shared.messages.station import Action
 
 Record = tuple[int, str, bytes]  # station time, key, payload
@@ -124,7 +124,7 @@ class ActionResult(msgspec.Struct, frozen=True):
         first = idempotency.earlier_result(state, action_id)
         if first is None:
             return None
-        reason = text_with_code(first.refused, first.refused_code)
+        reason = with_code(first.refused, first.refused_code)
         refused = Refused(first.action_id, reason) if reason else None
         return ActionResult(first.action_id, first.t_ns, refused, first.created_id)
 

@@ -12,7 +12,7 @@ import msgspec
 
 from base_station.importers.interface import ImportOptions
 from base_station.storage.imports import ImportedContent
-from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_with_code
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, with_code
 from shared.errors import UserError
 
 MOST_WAIT_S = 1200.0
@@ -57,5 +57,5 @@ def content_of(path: Path, options: ImportOptions) -> ImportedContent:
     is_read, encoded = done.stdout[0], done.stdout[1:]
     if not is_read:
         refusal = msgspec.msgpack.decode(encoded, type=ImportRefusal)
-        raise UserError(text_with_code(refusal.reason, refusal.code))
+        raise UserError(with_code(refusal.reason, refusal.code))
     return msgspec.msgpack.decode(encoded, type=ImportedContent)

@@ -29,7 +29,7 @@ from shared.coded_text import (
     code_of_text,
     coded,
     text_of_error,
-    text_with_code,
+    with_code,
 )
 from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
@@ -271,7 +271,7 @@ def _problem_of(job: ErasureJob) -> str:
         kind=kind,
         share_fraction=job.share,
         by=job.by,
-        reason=text_with_code(job.problem, job.problem_code),
+        reason=with_code(job.problem, job.problem_code),
     )
 
 
@@ -304,8 +304,7 @@ def _progress_before(job: ErasureJob) -> ErasureProgress:
 def _with_codes(texts: tuple[str, ...], codes: tuple[TextCode, ...]) -> tuple[str, ...]:
     """The texts of a file; those that an earlier version wrote have no codes."""
     return tuple(
-        text_with_code(text, codes[at] if at < len(codes) else NO_CODE)
-        for at, text in enumerate(texts)
+        with_code(text, codes[at] if at < len(codes) else NO_CODE) for at, text in enumerate(texts)
     )
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from shared.coded_text import NO_CODE, TextCode, code_of_text, text_with_code
+from shared.coded_text import NO_CODE, TextCode, code_of_text, with_code
 
 _HEAD = struct.Struct("<BqI")  # kind, monotonic time (ns), bytes that follow
 PACKET, PROBLEM = 0, 1
@@ -37,7 +37,7 @@ def encode_problem(text: str) -> bytes:
 def decode_problem(content: bytes) -> str:
     """The sentence with its code; msgspec.DecodeError where the content is not valid."""
     problem = msgspec.json.decode(content, type=_ProblemText)
-    return text_with_code(problem.text, problem.code)
+    return with_code(problem.text, problem.code)
 
 
 def encoded(captured: Captured) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base_station.replay.processes import wire
+from base_station.replay.processes import jobs, wire
 from base_station.replay.processes.log_process import LogProcess
 from base_station.storage.db.models import IncidentRow
 
@@ -19,7 +19,7 @@ class ReportProcess:
         """HTML, or PDF.  Raises StoreError with the reason where it cannot be made, ArchiveError
         where the log is in an archive that does not answer.
         """
-        job = wire.ReportJob(
+        job = jobs.ReportJob(
             log=self.log_process.log,
             database=self.log_process.database,
             incident_id=incident.incident_id,

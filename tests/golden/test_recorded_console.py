@@ -21,14 +21,13 @@ from base_station.views.wire import Snapshot
 from shared.channels import OPERATOR, POSITION, Qos, backfilled_key
 from shared.codec import decode, encode
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, is_derived
-from shared.messages import OperatorAction, Sighting, SightingKind
-from shared.messages.pins import PlaceBeacon, RemovePin, SetMeeting
+from shared.messages import OperatorAction
 from shared.messages.station import CloseIncident, ReportProblem
 from tests.rig import message_factory
 from tests.rig.console_log import reader, with_console
 from tests.rig.eventful_incident import incident
 from tests.rig.live_station import LiveStation, Screen, make_pipeline
-from tests.rig.round_walk import Walk
+from tests.rig.pinned_walk import pinned_walk
 from tests.rig.shown_replay import VIEW, people, plain, shown_at
 from tests.rig.station_script import Record, Script
 
@@ -60,22 +59,7 @@ def eventful() -> Script:
 
 
 def pinned() -> Script:
-    """Pins of every kind, one of them wrong, one removed, while two people walk."""
-    walk = Walk("FF-01", "FF-02", turn_rad=0.4)
-    for unit_id in walk.units:
-        walk.start(unit_id)
-    walk.go(60)
-    walk.pin("p1", "FF-01", 40.0)
-    walk.pin("bad", "FF-01", 50.0, off_m=90.0)
-    walk.go(20)
-    walk.script.act(SetMeeting("m", "FF-01", "FF-02", walk.script.t_ns, 1.0, ""))
-    walk.script.act(PlaceBeacon("b1", "door", 20.0, 0.0, None, 0.3, 3.0))
-    walk.go(20)
-    walk.script.say(Sighting(walk.script.header("FF-02"), SightingKind.BEACON, "b1", 2.0))
-    walk.go(10)
-    walk.script.act(RemovePin("p1"))
-    walk.go(10)
-    return walk.script
+    return pinned_walk(first_s=60, between_s=20, after_s=10).script
 
 
 def players(records: Sequence[Record], folder: Path) -> tuple[RecordedPlayer, RecomputedPlayer]:

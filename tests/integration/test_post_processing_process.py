@@ -19,13 +19,14 @@ from base_station.engine.log_feed import FolderFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor, read_report
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import Job, PostProcessingJob
 from base_station.replay.processes.post_processing_process import (
     MEMORY_MB,
     PostProcessingContext,
     PostProcessingProcess,
 )
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.wire import FrameChannel, Job, PostProcessingJob
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.models import IncidentRow

@@ -53,7 +53,7 @@ def begins_wrongly(node: ast.AST) -> bool:
     if not isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
         return False
     text = ast.get_docstring(node)
-    return bool(text) and text.split()[0].strip(",:") in NO_FIRST_WORDS
+    return text is not None and text.split()[0].strip(",:") in NO_FIRST_WORDS
 
 
 def everyday_names(node: ast.AST) -> list[str]:

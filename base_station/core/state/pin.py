@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, text_with_code
+from shared.coded_text import NO_CODE, TextCode, code_of_text, coded, with_code
 
 PinKind = Literal["place", "start", "meeting", "beacon", "tag"]
 PinState = Literal["used", "conflict", "waiting"]
@@ -59,7 +59,7 @@ class PinVerdict(msgspec.Struct, frozen=True):
     @property
     def coded_text(self) -> str:
         """``text`` with its code."""
-        return text_with_code(self.text, self.text_code)
+        return with_code(self.text, self.text_code)
 
 
 class Beacon(msgspec.Struct):

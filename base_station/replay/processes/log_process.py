@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from base_station.replay.processes import wire
+from base_station.replay.processes import frame_channel, jobs, wire
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.missing_segments import KnownSegment
@@ -27,13 +27,13 @@ class LogProcess:
     note_damage: Callable[[str], None]  # of the log
     known_segments: Callable[[], Iterable[KnownSegment]]  # of the log, by the database
     # Copy in an archive of an incident whose log is not here; None: it is.
-    instead_of_log: Callable[[IncidentRow], wire.ArchivedLog | None] = lambda _: None
+    instead_of_log: Callable[[IncidentRow], jobs.ArchivedLog | None] = lambda _: None
     # Between two station times: parts of the log that an archive has, and this station has not.
-    archived_parts: Callable[[int, int], tuple[wire.ArchivedPart, ...]] = lambda _from, _until: ()
+    archived_parts: Callable[[int, int], tuple[jobs.ArchivedPart, ...]] = lambda _from, _until: ()
 
     def ask(
         self,
-        job: wire.Job,
+        job: jobs.Job,
         read: Callable[[bytes], Answer | wire.Damage | wire.Failure],
         timeout_s: float | None = None,
     ) -> Answer:
@@ -51,7 +51,7 @@ class LogProcess:
 
     def _last_message(
         self,
-        line: wire.FrameChannel,
+        line: frame_channel.FrameChannel,
         read: Callable[[bytes], Answer | wire.Damage | wire.Failure],
         timeout_s: float | None,
     ) -> Answer:

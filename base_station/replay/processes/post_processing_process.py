@@ -20,7 +20,7 @@ from base_station.replay.post_processing import (
     Smoothed,
     read_report,
 )
-from base_station.replay.processes import wire
+from base_station.replay.processes import frame_channel, jobs, wire
 from base_station.replay.processes.server import STOPPING, ReplayProcesses
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
@@ -45,7 +45,7 @@ class PostProcessingContext:
     memory_mb: int = MEMORY_MB
     known_segments: Callable[[], Iterable[KnownSegment]] = tuple  # of the log, by the database
     # Copy in an archive of an incident whose log is not here; None: it is.
-    instead_of_log: Callable[[IncidentRow], wire.ArchivedLog | None] = lambda _: None
+    instead_of_log: Callable[[IncidentRow], jobs.ArchivedLog | None] = lambda _: None
 
 
 class PostProcessingProcess(PostProcessor):
@@ -62,7 +62,7 @@ class PostProcessingProcess(PostProcessor):
         super().__init__(archive, smoother, store, clock)
         self._place = place
         self._lock = Lock()  # guards the fields below
-        self._line: wire.FrameChannel | None = None  # to the process that is at work
+        self._line: frame_channel.FrameChannel | None = None  # to the process that is at work
         self._closed = False
 
     def smooth(self, incident: IncidentRow, on_progress: Progress = lambda _: None) -> Smoothed:
@@ -96,7 +96,7 @@ class PostProcessingProcess(PostProcessor):
             if self._line is not None:
                 self._line.hang_up()
 
-    def _begin(self, incident: IncidentRow) -> wire.FrameChannel:
+    def _begin(self, incident: IncidentRow) -> frame_channel.FrameChannel:
         self._place.prepare()
         job = self._job(incident)  # may wait for an archive
         with self._lock:
@@ -108,8 +108,8 @@ class PostProcessingProcess(PostProcessor):
     def _make_raw(self, incident: IncidentRow) -> Tracks:
         return self.post_process(incident, {}).raw
 
-    def _job(self, incident: IncidentRow) -> wire.PostProcessingJob:
-        return wire.PostProcessingJob(
+    def _job(self, incident: IncidentRow) -> jobs.PostProcessingJob:
+        return jobs.PostProcessingJob(
             log=self._place.log,
             checkpoints=self._place.checkpoints,
             database=self._place.database,
@@ -124,7 +124,7 @@ class PostProcessingProcess(PostProcessor):
         )
 
     def _follow(
-        self, incident: IncidentRow, line: wire.FrameChannel, on_progress: Progress
+        self, incident: IncidentRow, line: frame_channel.FrameChannel, on_progress: Progress
     ) -> PostProcessingResult:
         smoothed, raw = dict[str, bytes](), dict[str, bytes]()
         while (encoded := line.receive()) is not None:

@@ -13,10 +13,10 @@ import psutil
 
 from base_station.process import gc_tuning
 from base_station.replay.post_processing import PostProcessingResult, PostProcessor
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import PostProcessingJob
 from base_station.replay.processes.wire import (
     Failure,
-    FrameChannel,
-    PostProcessingJob,
     PostProcessingResultFrame,
     ProgressFrame,
     UnitTrailsFrame,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from threading import Lock
 
-from base_station.replay.processes import wire
+from base_station.replay.processes import frame_channel, jobs, wire
 from base_station.replay.processes.server import ReplayProcesses
 from shared.coded_text import coded
 from shared.errors import StoreError
@@ -16,10 +16,10 @@ class ProjectionProcess:
     def __init__(self, processes: ReplayProcesses) -> None:
         self._processes = processes
         self._lock = Lock()  # guards the fields below
-        self._line: wire.FrameChannel | None = None
+        self._line: frame_channel.FrameChannel | None = None
         self._closed = False
 
-    def run(self, job: wire.CatchUpJob) -> bool:
+    def run(self, job: jobs.CatchUpJob) -> bool:
         """Wait until the log is projected; return False where it is closed before that began.
 
         Raises StoreError, also where it is closed meanwhile.
@@ -44,7 +44,7 @@ class ProjectionProcess:
                 self._line.stop_sending()
 
 
-def _wait_for(line: wire.FrameChannel) -> None:
+def _wait_for(line: frame_channel.FrameChannel) -> None:
     while (encoded := line.receive()) is not None:
         match wire.read_catch_up(encoded):
             case wire.CaughtUp():

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from base_station.core.alarms.thresholds import Thresholds
-from base_station.replay.processes import wire
+from base_station.replay.processes import jobs, wire
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.rehearsal.report import RehearsalReport
 from base_station.storage.db.models import IncidentRow
@@ -25,7 +25,7 @@ class RehearsalProcess:
         """As ``Rehearser.rehearse``.  Raises StoreError with the reason where the log cannot be
         read, ArchiveError where it is in an archive that does not answer.
         """
-        job = wire.RehearsalJob(
+        job = jobs.RehearsalJob(
             log=self.log_process.log,
             checkpoints=self.checkpoints,
             database=self.log_process.database,

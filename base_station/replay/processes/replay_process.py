@@ -15,17 +15,16 @@ import msgspec
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import LiveSink, Trails
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import ArchivedLog, ReplayJob
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.processes.wire import (
-    ArchivedLog,
     Command,
     Damage,
     DeltaFrame,
-    FrameChannel,
     Pause,
     People,
     Play,
-    ReplayJob,
     ReplayReport,
     Seek,
     SetSpeed,

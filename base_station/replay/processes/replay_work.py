@@ -8,14 +8,14 @@ import msgspec
 
 from base_station.engine.ports import Trails
 from base_station.replay.playback import Archive
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import ReplayJob
 from base_station.replay.processes.wire import (
     Command,
     DeltaFrame,
-    FrameChannel,
     Pause,
     People,
     Play,
-    ReplayJob,
     Seek,
     SetSpeed,
     SnapshotFrame,

@@ -16,7 +16,8 @@ import time
 from collections.abc import Callable
 from threading import Lock
 
-from base_station.replay.processes.wire import FrameChannel, Job
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import Job
 from shared.coded_text import coded
 from shared.errors import StoreError
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base_station.replay.processes import wire
+from base_station.replay.processes import jobs, wire
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
 
@@ -23,7 +23,7 @@ class TimelineProcess:
         it is in an archive that does not answer.
         """
         window = request.window
-        job = wire.TimelineJob(
+        job = jobs.TimelineJob(
             log=self.log_process.log,
             database=self.log_process.database,
             unit_id=request.unit_id,

@@ -12,7 +12,7 @@ from shared.coded_text import (
     join_texts,
     map_texts,
     text_of_error,
-    text_with_code,
+    with_code,
 )
 
 
@@ -70,10 +70,10 @@ def test_text_of_an_error_keeps_the_code_with_which_it_was_raised() -> None:
 
 def test_text_gets_back_the_code_that_was_sent_beside_it() -> None:
     text = coded("worn", "{name} wears it", name="Ada")
-    again = text_with_code(str(text), code_of_text(text))
+    again = with_code(str(text), code_of_text(text))
     assert again == text
     assert code_of_text(again) == code_of_text(text)
-    assert code_of_text(text_with_code("plain", NO_CODE)) is NO_CODE
+    assert code_of_text(with_code("plain", NO_CODE)) is NO_CODE
 
 
 def test_text_and_the_texts_among_its_parameters_are_changed_together() -> None:

@@ -10,7 +10,8 @@ import pytest
 
 from base_station.archive.automatic import ArchivingContext, AutomaticArchive
 from base_station.config import ArchiveConfig
-from base_station.replay.processes.wire import ArchiveJob, FrameChannel
+from base_station.replay.processes.frame_channel import FrameChannel
+from base_station.replay.processes.jobs import ArchiveJob
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.store import Store

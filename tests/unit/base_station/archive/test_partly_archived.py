@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator
 
 from base_station.archive.partly_archived import OpenedPart, PartlyArchivedFeed, without_archived
-from base_station.replay.processes.wire import ArchivedLog, ArchivedPart
+from base_station.replay.processes.jobs import ArchivedLog, ArchivedPart
 from base_station.storage.missing_segments import KnownSegment
 from shared.mcap_log import LogRecord
 

@@ -203,7 +203,7 @@ def test_stopping_station_starts_no_more_replays(place: ReplayContext) -> None:
 _STATION = """
 import sys, time
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.wire import ReplayJob
+from base_station.replay.processes.jobs import (ReplayJob)
 processes = ReplayProcesses()
 line = processes.start(ReplayJob(sys.argv[1], sys.argv[2], "i1", int(sys.argv[3]), 2**62, 1.0))
 line.receive()
