@@ -227,7 +227,8 @@ def _alarm(session: Session, change: AlarmChange) -> None:
         "text": change.text,
         "by": change.by,
         "code": change.code,
-        "parameters": msgspec.json.encode(change.parameters).decode(),
+        # A map of a logged message has no order of its own.
+        "parameters": msgspec.json.encode(change.parameters, order="deterministic").decode(),
         "reason": change.reason,
         "note": change.note,
         "peak": change.peak,
