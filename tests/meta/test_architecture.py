@@ -52,8 +52,9 @@ def definitions(path: Path) -> set[str]:
     return found
 
 
-def test_there_are_four_walks_of_ten_lines() -> None:
-    assert [title for title, _ in WALKS] == ["sample", "position", "acknowledgement", "replay"]
+def test_there_are_five_walks_of_ten_lines() -> None:
+    titles = ["sample", "position", "acknowledgement", "disconnection", "replay"]
+    assert [title for title, _ in WALKS] == titles
     for title, walk in WALKS:
         numbers = [int(number) for number in re.findall(r"^(\d+)\. `", walk, flags=re.MULTILINE)]
         assert numbers == list(range(1, 11)), title

@@ -12,7 +12,8 @@ import pytest
 from tests.bench.__main__ import bench_entry_points
 from tests.conftest import PROJECT_ROOT
 
-PAGES = [PROJECT_ROOT / "README.md", *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
+ROOT_PAGES = [PROJECT_ROOT / "README.md", PROJECT_ROOT / "CONTRIBUTING.md"]
+PAGES = [*ROOT_PAGES, *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
 PYPROJECT = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())
 COMMANDS = [
     *PYPROJECT["project"]["entry-points"]["muster.commands"],
