@@ -1,1 +1,1 @@
-"""Forgets people and incidents wherever the station keeps them."""
+"""Erasure of people and incidents in log, database, checkpoints, recordings and imports."""

@@ -54,7 +54,7 @@ class ErasureState(StrEnum):
 
 
 class ErasureJob(msgspec.Struct):
-    """One erasure: its subject, who ordered it, and its progress.  It has no name of a person."""
+    """One erasure: its subject, the user who requested it, and its progress.  Without names."""
 
     forgetting_id: str
     by: str
@@ -78,11 +78,11 @@ Obstacle = Callable[[ErasureJob], str]  # why it has to wait, as a sentence; emp
 
 
 class _ClosedError(Exception):  # it is no error
-    """The station stops: the rest is done when it runs again."""
+    """Stop of the station: the erasure continues when it runs again."""
 
 
 class ErasureQueue:
-    """Works while it is entered; any thread may call the rest."""
+    """Queue; its thread runs while the context is entered.  Any thread may call its methods."""
 
     def __init__(
         self,
@@ -110,10 +110,10 @@ class ErasureQueue:
         self._jobs.close()
 
     def add(self, by: str, kind: str, subject_id: str, *, from_peer: bool = False) -> ErasureJob:
-        """It is on the disk when this returns, and will be done.  The same twice is once; one of
-        ``from_peer`` that waits here is ordered by the other station now.
+        """Add an erasure; it is on the disk when this returns.
 
-        Raises StoreError where the disk does not take it.
+        A repeated request gives the job that waits already; with ``from_peer`` that job is marked
+        as ordered by the other station.  Raises StoreError where the disk does not take it.
         """
         added = self._jobs.add(_find_or_create(by, kind, subject_id, from_peer=from_peer))
         if from_peer and not added.from_peer:
@@ -124,17 +124,17 @@ class ErasureQueue:
         return added
 
     def all(self) -> tuple[ErasureJob, ...]:
-        """The last that are over, and those under way."""
+        """The newest finished erasures, and those that wait or are under way."""
         return self._jobs.all()
 
     def own_waiting(self) -> tuple[ErasureJob, ...]:
-        """Those that were requested here and are not done: a station that follows hands them to the
-        one that leads.
+        """Unfinished erasures that were requested here; a following station hands them to the
+        leading one.
         """
         return tuple(one for one in self.all() if not (one.state.is_over or one.from_peer))
 
     def problems(self) -> tuple[str, ...]:
-        """Sentences for the console, while something is under way."""
+        """Sentences for the console about unfinished erasures."""
         return tuple(_problem_of(one) for one in self.all() if not one.state.is_over)
 
     def _work_on_first(self, jobs: list[ErasureJob]) -> float:
@@ -147,7 +147,7 @@ class ErasureQueue:
         return _AGAIN_S if jobs else UNTIL_WOKEN
 
     def _work(self, job: ErasureJob) -> bool:
-        """False where it is to be tried again later."""
+        """Work on a job; returns False where it has to be tried again later."""
         progress = _progress_before(job)
         self._note(job, state=ErasureState.WORKING, began=True, **_problem(""))
         problem = ""
@@ -201,7 +201,7 @@ def erase_now(
     subject_id: str,
     on_progress: Progress,
 ) -> ErasureResult:
-    """Erase without a queue; interrupted, a queue or call with the same file continues it.
+    """Erase without a queue; if interrupted, a queue or a call with the same file continues it.
 
     Raises UserError where the subject is unknown, or a person interrupts it.
     """

@@ -92,7 +92,7 @@ class RecordingTransfers(Protocol):
 
 
 class ErasureService:
-    """One at a time; from any thread but the drive's."""
+    """Erasures, one at a time; called from any thread but the engine's, for which it waits."""
 
     def __init__(
         self,
@@ -107,11 +107,11 @@ class ErasureService:
         forget_name: Callable[[str], None] = lambda _person_id: None,
         erase_audio: EraseAudio = lambda _from_ns, _until_ns: 0,
     ) -> None:
-        """``act`` has the running station forget what it holds in memory, and order the erasure;
-        None: no station runs on the folder.  ``is_repair_pending``: True where the lost part of a
-        segment is about to be fetched from the other station.  ``forget_name`` has it show a
-        person's name no more.  ``erase_audio`` is called for a whole incident alone: speakers
-        cannot be told apart in audio.
+        """``act`` performs an action of the running station: it erases its memory and orders the
+        erasure; None: no station runs on the folder.  ``is_repair_pending``: True where the lost
+        part of a segment is about to be fetched from the other station.  ``forget_name`` removes a
+        person's name from what the station shows.  ``erase_audio`` is called for whole incidents
+        only: audio does not say which person speaks.
         """
         self._log = log
         self._reading = LogReading(log)
@@ -137,8 +137,10 @@ class ErasureService:
         *,
         from_peer: bool = False,
     ) -> ErasureResult:
-        """``from_peer``: the other station has erased it.  UserError where the person is unknown;
-        at a repeated erasure only the audit may still have an entry.
+        """Erase a person; ``from_peer``: the other station has done so already.
+
+        Raises UserError where the person is unknown.  A repeated erasure raises none: only the
+        audit may still know the person.
         """
         progress = progress or ErasureProgress()
         found, is_known = self._erasure_of_person(person_id, None)
@@ -162,8 +164,9 @@ class ErasureService:
         *,
         from_peer: bool = False,
     ) -> ErasureResult:
-        """``from_peer``: as of a person.  UserError where there is no such incident, or it is
-        open.
+        """Erase an incident; ``from_peer`` as for a person.
+
+        Raises UserError where there is no such incident, or it is open.
         """
         begun = self._begun.of(incident_id)
         found = begun or self._erasure_of_incident(incident_id, None)
@@ -183,7 +186,10 @@ class ErasureService:
     def _erasure_of_person(
         self, person_id: str, order: ErasureOrder | None
     ) -> tuple[Erasure, bool]:
-        """And whether anything knows the person.  Names matter where a log has any."""
+        """Extent of the erasure, and True where tables or log know the person.
+
+        Names are searched for only where a log has names: older logs do.
+        """
         with self._store.read() as session:
             names = known_names(session, person_id)
         actions = actions_before(self._reading.actions(), order)
@@ -196,7 +202,7 @@ class ErasureService:
         return found, bool(found.wearings or names)
 
     def _with_lost_wearings(self, found: Erasure, until_ns: int) -> Erasure:
-        """With the times that only the tables know, where a part of the log is gone."""
+        """Add the times of wearing a unit that the tables have: a part of the log is gone."""
         with self._store.read() as session:
             return _with_wearings(found, wearings_of(session, found.person_id, until_ns))
 
@@ -293,7 +299,10 @@ class ErasureService:
             progress.kept = (_RADIO_KEPT,)
 
     def _erase_in_memory(self, by: str, erasure: Erasure) -> None:
-        """Done when this returns: what the station saved before that would bring them back."""
+        """Erase in the memory of the running station; done when this returns.
+
+        Only then the rest is erased: the station would save what it still has in memory again.
+        """
         if erasure.person_id:
             self._forget_name(erasure.person_id)
         if self._act is None:
@@ -304,8 +313,9 @@ class ErasureService:
                 _result(one)
 
     def _remove_recordings(self, erasure: Erasure, progress: ErasureProgress) -> None:
-        """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
-        way finds its folder gone, and ends.
+        """Remove the raw recordings of the units, of all their wearers: the units have them still.
+
+        A transfer that is under way ends, as its folder is gone.
         """
         self._transfers.forget(erasure.unit_ids)
         recordings = DataFolder(self._log.folder.parent).recordings
@@ -346,7 +356,7 @@ def _result(acted: Future[ActionResult]) -> ActionResult:
 
 
 def _remove(folder: Path) -> None:
-    """Whoever is writing into it just now has one more question to put, and then ends."""
+    """Remove a folder; tries again while a transfer still writes its last file into it."""
     end_s = time.monotonic() + _REMOVED_WITHIN_S
     while folder.exists():
         shutil.rmtree(folder, ignore_errors=True)

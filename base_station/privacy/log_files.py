@@ -25,7 +25,7 @@ _ACTIONS = OPERATOR.key(STATION_ID)
 
 
 class LogFiles(Protocol):
-    """The log as files; a station that runs goes on in a new one."""
+    """Files of a log; a running station writes on in a new segment while they are rewritten."""
 
     @property
     def folder(self) -> Path:
@@ -34,15 +34,15 @@ class LogFiles(Protocol):
 
     @property
     def rewriting(self) -> AbstractContextManager[object]:
-        """Entered while complete segments are exchanged."""
+        """Lock that is held while complete segments are replaced."""
         ...
 
     def complete_segments(self) -> Collection[Path]:
-        """In order; none of them is written to from now on, and none is missing."""
+        """Segments that are not written to any more, in order, without a gap."""
         ...
 
     def note_rewritten(self, path: Path) -> None:
-        """This segment has another content now."""
+        """Note that the content of this segment was replaced."""
         ...
 
 
@@ -57,11 +57,11 @@ class ClosedLog:
         return segment_paths(self.folder)
 
     def note_rewritten(self, path: Path) -> None:
-        """Nothing: no station has this segment in memory."""
+        """Do nothing: no running station has this segment in memory."""
 
 
 class LogReading:
-    """Questions of an erasure to a log, before it is rewritten."""
+    """Reading of a log before an erasure rewrites it."""
 
     def __init__(self, log: LogFiles) -> None:
         self._log = log

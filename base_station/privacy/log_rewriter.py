@@ -21,7 +21,7 @@ RepairPending = Callable[[Path, str], bool]  # receives the damage in a segment 
 
 
 class LogRewriter:
-    """For one thread at a time; a station that runs goes on logging in a new segment."""
+    """Rewriter of a log, for one thread at a time; a running station logs on in a new segment."""
 
     def __init__(self, log: LogFiles, records: Records, is_repair_pending: RepairPending) -> None:
         """``is_repair_pending``: True where the lost part of a segment is about to be fetched from
@@ -69,8 +69,9 @@ class LogRewriter:
                 self._records.put_segments([segment_row(segment.info())])
 
     def _noting(self, path: Path, damage: list[str]) -> Callable[[str], None]:
-        """Callback that notes damage: rewritten without it, a segment would look whole.  Raises
-        StoreError where the segment is about to be repaired.
+        """Callback that notes damage, as a rewritten segment does not show it any more.
+
+        The callback raises StoreError where the segment is about to be repaired.
         """
 
         def note(part: str) -> None:

@@ -1,5 +1,7 @@
-"""Erasures that are not done yet, in a file: a log of which a part is rewritten does not say any
-more who was there.
+"""File of the erasures that have begun and are not finished.
+
+A log of which a part is rewritten does not show any more which people were at the incident, so
+their extent is saved before.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ class _OlderErasure(msgspec.Struct, frozen=True):
 
 
 def _with_actions(erasure: Erasure, older: _OlderErasure) -> Erasure:
-    """An erasure that an earlier version has begun, as this one goes on with it."""
+    """Convert an erasure that an earlier version has begun."""
     if not older.opening_id:
         return erasure
     return msgspec.structs.replace(
@@ -44,17 +46,17 @@ def _with_actions(erasure: Erasure, older: _OlderErasure) -> Erasure:
 
 
 class PendingErasure:
-    """For one thread."""
+    """Unfinished erasures of incidents; used in one thread."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def of(self, incident_id: str) -> Erasure | None:
-        """As it was found before anything went.  Raises StoreError where that cannot be read."""
+        """Extent as it was before the first removal.  Raises StoreError where it cannot be read."""
         return next((one for one in self._read() if one.incident_id == incident_id), None)
 
     def keep(self, erasure: Erasure) -> None:
-        """On the disk when this returns.  Raises StoreError."""
+        """Save an erasure; it is on the disk when this returns.  Raises StoreError."""
         self._write([*self._read(), erasure])
 
     def remove(self, incident_id: str) -> None:
@@ -84,7 +86,7 @@ class PendingErasure:
         return [_with_actions(one, before) for one, before in zip(found, older, strict=True)]
 
     def _write(self, begun: list[Erasure]) -> None:
-        """It has names in it."""
+        """Write the file, private as it contains names; remove it where nothing is left."""
         if begun:
             write_atomically(self._path, msgspec.json.encode(begun))
         else:

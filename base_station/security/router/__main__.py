@@ -31,9 +31,9 @@ _CHECK_EVERY_S = 1.0
 
 
 def run_router(settings: RouterSettings, orders: Iterator[bytes]) -> int:
-    """Until a signal comes or ``orders`` end, which they do when the parent dies.
+    """Run the router until a signal comes or ``orders`` end, as they do when the parent dies.
 
-    Reports to the parent on standard output whether it is open.  Gives the exit code.
+    Reports to the parent on standard output whether the router is open.  Returns the exit code.
     """
     set_up_logging()
     allow_many_files()
@@ -62,7 +62,7 @@ def run_router(settings: RouterSettings, orders: Iterator[bytes]) -> int:
 
 
 def _write_to_parent(line: str) -> None:
-    """A parent that was killed meanwhile gets nothing, and has ended the input too."""
+    """Write a line to the parent; without effect where the parent was killed meanwhile."""
     with suppress(BrokenPipeError):
         # Not print: it would try to write an unwritten line again as the program ends.
         os.write(sys.stdout.fileno(), f"{line}\n".encode())
@@ -74,7 +74,7 @@ def _carry_out(
     ban: Sequence[Callable[[str, float], None]],
     station: tuple[str, ...],
 ) -> None:
-    """Until the end of input: the parent is gone, and so is what only it would have removed."""
+    """Carry out orders until the input ends: the parent is gone then, so remove its folders."""
     for line in orders:
         order = msgspec.json.decode(line, type=BanOrder)
         for one in ban:

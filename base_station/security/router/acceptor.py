@@ -46,7 +46,7 @@ _OUT_OF_FILES = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Acceptor:
-    """Listens from its making until it is closed, in a thread of its own."""
+    """Thread that listens from the making of this object until ``close``."""
 
     def __init__(
         self, listen: Sequence[str], admission: ConnectionAdmission, authority: InternalAuthority
@@ -68,7 +68,7 @@ class Acceptor:
         self._thread.start()
 
     def set_admission(self, admission: ConnectionAdmission) -> None:
-        """Sets who may connect; a holder that is no longer enrolled loses its links at once."""
+        """Set the holders that may connect; links of holders that are not enrolled any more end."""
         self._loop.call_soon_threadsafe(self._set_admission, admission)
 
     def route_to(self, port: int | None) -> None:
@@ -76,7 +76,7 @@ class Acceptor:
         self._loop.call_soon_threadsafe(self._route_to, port)
 
     def ban(self, common_name: str, seconds: float) -> None:
-        """Ends its links, and refuses new ones for a while."""
+        """End the links of a holder, and refuse new ones for so many seconds."""
         self._loop.call_soon_threadsafe(self._ban, common_name, seconds)
 
     def refused(self) -> RefusalSummary:
@@ -128,7 +128,7 @@ class Acceptor:
         return self._refusals.summary(self._loop.time())
 
     def _check(self) -> None:
-        """Ends links with their certificates, and logs who was refused."""
+        """End links whose certificates have expired, and log refused connections."""
         self._loop.call_later(_CHECK_EVERY_S, self._check)
         self._links.end_expired()
         if self._loop.time() - self._logged_s < _LOG_EVERY_S:
@@ -159,7 +159,9 @@ class Acceptor:
             self._evict(self._pending.add(network, task))
 
     def _free_files(self, listening: socket.socket) -> None:
-        """All files that this process may open are open: the oldest go, and then it goes on."""
+        """Close the oldest pending connection, and accept again after a pause: this process may not
+        open more files.
+        """
         self._evict(self._pending.oldest())
         self._loop.remove_reader(listening.fileno())
         resume = partial(self._loop.add_reader, listening.fileno(), self._accept, listening)
@@ -172,7 +174,7 @@ class Acceptor:
             task.cancel()
 
     async def _serve(self, connection: socket.socket, network: str) -> None:
-        """One connection, until its link stands or it is refused."""
+        """Serve one connection until its link is relayed or refused."""
         task = asyncio.current_task()
         assert task is not None
         try:
@@ -200,7 +202,7 @@ class Acceptor:
     async def _authenticate(
         self, connection: socket.socket, network: str, task: asyncio.Task[None]
     ) -> RelayedLink:
-        """Wait for the first bytes of its holder; costs nothing until they come."""
+        """Make the handshake once the first bytes have come; a silent connection costs nothing."""
         await readable(connection)
         if not connection.recv(1, socket.MSG_PEEK):
             raise RefusedError(Refusal.ENDED)
@@ -214,7 +216,7 @@ class Acceptor:
         return link
 
     async def _connect(self, link: RelayedLink) -> None:
-        """Hands it on to the router, which may be away for a moment."""
+        """Hand the link on to the router, for which it waits while the router restarts."""
         with ExitStack() as undo:
             undo.callback(link.secured.close)
             undo.callback(link.close)

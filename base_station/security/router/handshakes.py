@@ -17,7 +17,10 @@ from base_station.security.router.pending import RoundRobin
 
 
 def server_context(admission: ConnectionAdmission) -> ssl.SSLContext:
-    """Asks for a certificate of the authority; resumes no session, which would ask for none."""
+    """Context that requires a certificate of the authority.
+
+    Sessions are not resumed: a resumed session would need no certificate.
+    """
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.verify_mode = ssl.CERT_REQUIRED
     context.load_verify_locations(cadata=admission.identity.authority.decode("ascii"))
@@ -36,14 +39,17 @@ def holder_of(secured: ssl.SSLSocket) -> tuple[str, float]:
 
 
 async def readable(connection: socket.socket) -> None:
-    """Bytes have come, or the end."""
+    """Wait until the connection has bytes to read or was closed by the other end."""
     await _ready(connection, writing=False)
 
 
 async def accept_secure(
     connection: socket.socket, context: ssl.SSLContext, round_robin: RoundRobin, network: str
 ) -> ssl.SSLSocket:
-    """Takes ``connection`` over.  Raises OSError, of which ssl.SSLError is one."""
+    """Make the handshake of an accepted connection, which the result owns from then on.
+
+    Raises OSError (``ssl.SSLError`` is one).
+    """
     await round_robin.wait(network)
     secured = context.wrap_socket(connection, server_side=True, do_handshake_on_connect=False)
     with ExitStack() as undo:
@@ -58,7 +64,7 @@ async def accept_secure(
 async def connect_secure(
     port: int, context: ssl.SSLContext, buffer_bytes: int | None
 ) -> ssl.SSLSocket:
-    """To the router on this machine.  Raises OSError."""
+    """Connect to the router on this machine.  Raises OSError."""
     with ExitStack() as undo:
         connection = undo.enter_context(socket.socket())
         connection.setblocking(False)

@@ -47,7 +47,7 @@ class RelayedLink:
 
 
 class Links:
-    """For one thread."""
+    """Links by their holders; used in one thread."""
 
     def __init__(self, admission: ConnectionAdmission, authority: InternalAuthority) -> None:
         self._admission = admission
@@ -56,7 +56,7 @@ class Links:
         self._rates = LinkRates()
 
     def add(self, secured: ssl.SSLSocket, task: asyncio.Task[None], now_s: float) -> RelayedLink:
-        """The oldest of a holder's links ends where there would be too many.
+        """Add a link; the oldest links of its holder end where there would be too many.
 
         Raises RefusedError.
         """
@@ -76,7 +76,9 @@ class Links:
         return link
 
     def router_connection_settings(self, common_name: str) -> tuple[ssl.SSLContext, int | None]:
-        """With which certificate, and how much may wait in the kernel; None: as it likes."""
+        """TLS context with the holder's certificate, and the size of the kernel's buffer in bytes;
+        None: its default.
+        """
         has_small_buffer = self._admission.holders.get(common_name) in _SMALL_BUFFER_HOLDERS
         return self._authority.client_context(
             common_name

@@ -14,7 +14,10 @@ _BACKLOG = 4096  # the kernel takes less where it is set to
 
 
 def listen_on(endpoints: Sequence[str]) -> list[socket.socket]:
-    """Non-blocking.  Raises BusError, PortInUseError where another program listens there."""
+    """Non-blocking sockets of the endpoints.
+
+    Raises BusError; PortInUseError where another program listens there.
+    """
     listening: list[socket.socket] = []
     try:
         for endpoint in endpoints:
@@ -35,7 +38,7 @@ def free_port() -> int:
 
 
 def _interface(endpoint: str) -> str:
-    """``tls/0.0.0.0:7447#iface=eth0``, as Zenoh writes it; empty: any."""
+    """Network interface of an endpoint such as ``tls/0.0.0.0:7447#iface=eth0``; empty: any."""
     _, _, options = endpoint.partition("#")
     name, _, value = options.partition("=")
     if name not in ("", "iface") or ";" in value:
@@ -44,7 +47,7 @@ def _interface(endpoint: str) -> str:
 
 
 def _listen(host: str, port: int, interface: str) -> list[socket.socket]:
-    """On all addresses of the name.  Raises OSError where there is none that can be had."""
+    """Listen on all addresses of the name.  Raises OSError where none of them is possible."""
     found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
     listening: list[socket.socket] = []
     failed: OSError | None = None

@@ -17,8 +17,10 @@ _CONNECT_TIMEOUT_S = 0.3
 
 
 class PeerRouterProbe:
-    """Asks it, and answers it.  That Zenoh names a link is not enough: when two routers open at
-    once, each towards the other, there may be one that brings nothing in one of the directions.
+    """Query to the other router, and answers to its queries.
+
+    A link that Zenoh lists may carry nothing in one direction: that happens when two routers
+    connect to each other at the same moment.
     """
 
     def __init__(self, bus: Bus) -> None:
@@ -27,7 +29,7 @@ class PeerRouterProbe:
         self._serving = bus.serve(f"{_KEY}/{self._name.decode()}", self._replies)
 
     def responds(self) -> bool:
-        """Waits for a second where the link is there and nothing comes over it."""
+        """True where the other router answers; takes a second where the link carries nothing."""
         try:
             replies = self._bus.query(f"{_KEY}/*", b"", _ANSWER_TIMEOUT_S)
             return any(reply != self._name for reply in replies)
@@ -42,7 +44,7 @@ class PeerRouterProbe:
 
 
 def accepts_connections(endpoints: Sequence[str]) -> bool:
-    """True where anything takes connections: the other machine is up, and so is the network."""
+    """True where a program accepts connections there: the other machine and the network work."""
     for endpoint in endpoints:
         try:
             socket.create_connection(endpoint_address(endpoint), _CONNECT_TIMEOUT_S).close()

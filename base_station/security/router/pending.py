@@ -1,4 +1,4 @@
-"""Connections that have not shown yet who they are, and whose turn it is among them."""
+"""Connections that are not authenticated yet: their number is bounded, networks take turns."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from collections import deque
 
 
 class PendingConnections:
-    """Bounded: of too many the oldest goes, of the network that has most.
+    """Bounded set of connections: where there are too many, the oldest one of the network with the
+    most connections is closed.
 
-    A new one is never refused: who greets at once is let in however many are silent, from its own
-    address too.
+    A new connection is never refused.  So a unit that begins its handshake at once gets in, even
+    where many silent connections come from its own address.
     """
 
     def __init__(self, max_count: int) -> None:
@@ -22,13 +23,13 @@ class PendingConnections:
         return self._count
 
     def add(self, network: str, task: asyncio.Task[None]) -> asyncio.Task[None] | None:
-        """Gives the one that has to go for it."""
+        """Add a connection; returns the one to close for it, if any."""
         self._networks.setdefault(network, {})[task] = None
         self._count += 1
         return self.oldest() if self._count > self._max_count else None
 
     def oldest(self) -> asyncio.Task[None] | None:
-        """Oldest connection of the network that has most; it is no longer counted."""
+        """Remove and return the oldest connection of the network with the most connections."""
         if not self._networks:
             return None
         network = max(self._networks, key=lambda one: len(self._networks[one]))
@@ -37,7 +38,7 @@ class PendingConnections:
         return task
 
     def remove(self, network: str, task: asyncio.Task[None]) -> None:
-        """One that is not there is no matter."""
+        """Remove a connection, if it is still counted."""
         tasks = self._networks.get(network, {})
         if task in tasks:
             del tasks[task]
@@ -47,8 +48,8 @@ class PendingConnections:
 
 
 class RoundRobin:
-    """One expensive step a pass of the loop, so that links are served in between; networks take
-    turns, so that many handshakes from one do not delay those from another.
+    """Scheduler of expensive steps: one in each pass of the loop, so that links are served between
+    them.  Networks take turns, so that many handshakes from one do not delay those from another.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
