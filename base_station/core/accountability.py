@@ -39,7 +39,7 @@ def new_incident(
     """New incident on a site, with the usual intervals where none are given."""
     par_s = action.par_interval_s or PAR_INTERVAL_S
     work_s = action.work_limit_s or WORK_LIMIT_S
-    _check(par_s, work_s)
+    _require_valid_times(par_s, work_s)
     opened = action.incident_id, action.name, state.t_ns
     return Incident(*opened, None, par_s, work_s, site_id, dispatch)
 
@@ -47,7 +47,7 @@ def new_incident(
 def change_intervals(state: StationState, action: SetAccountability) -> Iterator[UnitState]:
     """Set other intervals for an open incident, from now on and for all its members."""
     incident = state.named_incident(action.incident_id)
-    _check(action.par_interval_s, action.work_limit_s)
+    _require_valid_times(action.par_interval_s, action.work_limit_s)
     state.incidents[incident.incident_id] = msgspec.structs.replace(
         incident, par_interval_s=action.par_interval_s, work_limit_s=action.work_limit_s
     )
@@ -114,7 +114,9 @@ def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
             )
         )
     for unit in found:
-        _confirm(state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id))
+        _record_confirmation(
+            state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id)
+        )
     return found
 
 
@@ -151,7 +153,7 @@ def record_answer(
         return []
     t_ns = max(answered_ns or 0, command.issued_ns)
     entry_id = command.command_id if source == "radio" else ""
-    _confirm(state, unit, ParConfirmation(t_ns, source, by, entry_id))
+    _record_confirmation(state, unit, ParConfirmation(t_ns, source, by, entry_id))
     return [unit]
 
 
@@ -193,7 +195,9 @@ def warning_s(incident: Incident) -> float:
     return min(5 * 60.0, incident.par_interval_s / 4)
 
 
-def _confirm(state: StationState, unit: UnitState, confirmation: ParConfirmation) -> None:
+def _record_confirmation(
+    state: StationState, unit: UnitState, confirmation: ParConfirmation
+) -> None:
     """Record a confirmation; one from before this duty concerns another member or incident."""
     duty = unit.duty
     if duty is not None and confirmation.t_ns >= duty.since_ns:
@@ -239,7 +243,7 @@ def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
     return action.everyone or action.crew == unit.wearer.person.crew
 
 
-def _check(par_interval_s: float, work_limit_s: float) -> None:
+def _require_valid_times(par_interval_s: float, work_limit_s: float) -> None:
     for what, time_s in (("roll call", par_interval_s), ("rest", work_limit_s)):
         if not (math.isfinite(time_s) and SHORTEST_S <= time_s <= LONGEST_S):
             raise UserError(

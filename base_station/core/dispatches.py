@@ -28,13 +28,13 @@ def note(state: StationState, report: NoteDispatch) -> None:
         return
     received_ns = state.t_ns if known is None else known.received_ns
     is_dismissed = known is not None and known.is_dismissed
-    others = _without(state, report.number)
+    others = _dispatches_without(state, report.number)
     state.dispatches = (*others, Dispatch(report, received_ns, is_dismissed))[-KEPT:]
 
 
 def dismiss(state: StationState, number: str) -> None:
     """Offer this dispatch no longer; UserError where there is none."""
-    known = _required(state, number)
+    known = _required_dispatch(state, number)
     dismissed = msgspec.structs.replace(known, is_dismissed=True)
     state.dispatches = tuple(dismissed if one is known else one for one in state.dispatches)
 
@@ -53,8 +53,8 @@ def take(state: StationState, number: str) -> NoteDispatch:
                 incident=opened.name,
             )
         )
-    report = _required(state, number).report
-    state.dispatches = _without(state, number)
+    report = _required_dispatch(state, number).report
+    state.dispatches = _dispatches_without(state, number)
     return report
 
 
@@ -79,11 +79,11 @@ def _is_of(incident: Incident, number: str) -> bool:
     return incident.dispatch is not None and incident.dispatch.number == number
 
 
-def _without(state: StationState, number: str) -> tuple[Dispatch, ...]:
+def _dispatches_without(state: StationState, number: str) -> tuple[Dispatch, ...]:
     return tuple(one for one in state.dispatches if one.report.number != number)
 
 
-def _required(state: StationState, number: str) -> Dispatch:
+def _required_dispatch(state: StationState, number: str) -> Dispatch:
     known = find(state, number)
     if known is None:
         raise UserError(

@@ -44,7 +44,7 @@ def enter(state: StationState, units: Iterable[UnitState], incident: Incident) -
     """Put units into an incident that was just opened: all counts restart."""
     for unit in units:
         unit.incident_id = incident.incident_id
-        _restart(unit)
+        _reset_assignment_values(unit)
         unit.heat.dose = unit.heat.late_dose = 0.0
         thermal_dose.restart_intervals(unit.heat.exposures)
         accountability.begin(state, unit)
@@ -57,7 +57,7 @@ def move(state: StationState, unit: UnitState, incident: Incident) -> None:
     before = unit.duty
     accountability.end(state, unit)
     unit.incident_id = incident.incident_id
-    _restart(unit)
+    _reset_assignment_values(unit)
     accountability.begin(state, unit)
     if before is not None and unit.duty is not None:
         accountability.continue_duty(state, unit, unit.duty, before)
@@ -87,7 +87,7 @@ def follow_person(
         unit.duty = duty
 
 
-def _restart(unit: UnitState) -> None:
+def _reset_assignment_values(unit: UnitState) -> None:
     """Reset the values that count from the assignment to an incident on."""
     unit.trails.shown.clear()
     unit.trust = TrustTally()

@@ -44,9 +44,9 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
     changed: Iterable[UnitState]
     match action:
         case OpenIncident():
-            changed = _open(state, action)
+            changed = _open_incident(state, action)
         case CloseIncident():
-            changed = _close(state, action)
+            changed = _close_incident(state, action)
         case NoteDispatch():
             dispatches.note(state, action)
             changed = []
@@ -56,9 +56,9 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
         case AssignIncident():
             changed = incident_membership.assign(state, action)
         case Assign():
-            changed = _assign(state, action)
+            changed = _assign_unit(state, action)
         case Unassign():
-            changed = [_unassign(state, state.registered_unit(action.unit_id))]
+            changed = [_unassign_unit(state, state.registered_unit(action.unit_id))]
         case CheckIn():
             changed = accountability.check_in(state, by, action)
         case SetAccountability():
@@ -72,7 +72,7 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
     return changed
 
 
-def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
+def _open_incident(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
     """Open an incident: all units are in it, unless others are open."""
     opened = state.open_incidents
     if opened and not action.beside_others:
@@ -119,7 +119,7 @@ def _end_before(state: StationState, site_id: str, *, is_only: bool) -> list[Uni
     return left
 
 
-def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
+def _close_incident(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
     if not action.incident_id:
         raise UserError(coded("incident-without-id", "no open incident without an id"))
     running = state.named_incident(action.incident_id)
@@ -132,13 +132,13 @@ def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
     return members
 
 
-def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
+def _assign_unit(state: StationState, action: Assign) -> Iterator[UnitState]:
     unit = state.registered_unit(action.unit_id)
     wearer, duty, came_from = unit.wearer, None, None
     for other in state.units.values():
         if other is not unit and other.wearer.person_id == action.person_id:
             duty, came_from = other.duty, state.open_incident_of(other)
-            yield _unassign(state, other)
+            yield _unassign_unit(state, other)
     same = wearer.person_id == action.person_id
     if wearer.person is not None and not same:
         unit.end_wearing(state.t_ns)
@@ -152,7 +152,7 @@ def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
     yield unit
 
 
-def _unassign(state: StationState, unit: UnitState) -> UnitState:
+def _unassign_unit(state: StationState, unit: UnitState) -> UnitState:
     unit.end_wearing(state.t_ns)
     accountability.end(state, unit)
     return unit

@@ -35,7 +35,7 @@ class PlaceActionHandler:
         site_id = state.site_id_of(action.incident_id)
         site = state.sites[site_id]
         if isinstance(action, SetAnchor):
-            self._positioning.set_anchor(state, site_id, _anchor(action))
+            self._positioning.set_anchor(state, site_id, _checked_anchor(action))
         elif isinstance(action, SetReference):
             _require_finite(action.down_m)
             unit_id = state.registered_unit(action.unit_id).unit_id if action.unit_id else None
@@ -121,7 +121,7 @@ def _is_first_known_place(site: SiteState) -> bool:
     return site.plan is not site.placed_plan and not is_known
 
 
-def _anchor(action: SetAnchor) -> Anchor:
+def _checked_anchor(action: SetAnchor) -> Anchor:
     _require_finite(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
     if abs(action.lat_deg) > 90.0 or abs(action.lon_deg) > 180.0:
         raise UserError(

@@ -94,7 +94,7 @@ def in_ns(t_s: int) -> int:
     return t_s * NS_PER_S
 
 
-def logged(script: Script) -> list[Record]:
+def records_with_fused(script: Script) -> list[Record]:
     """Records of a script with the fused positions, which a station logs, too."""
     key = FUSED.key(STATION_ID)
     fused = [(one.t_meas_ns, key, encode(one)) for one in script.fused]

@@ -13,7 +13,7 @@ from shared.clock import SystemClock
 from shared.geo import Anchor
 from shared.mcap_log import SegmentWriter
 from shared.messages.station import Assign, CloseIncident, SetAnchor
-from tests.rig.imported_files import logged
+from tests.rig.imported_files import records_with_fused
 from tests.rig.round_walk import Walk
 
 ANCHOR = Anchor(52.0, 4.0, 0.0, 0.3)
@@ -29,7 +29,7 @@ def new_folder(folder: Path, name: str, incident_s: int = 60) -> Path:
     walk.start("FF-01")
     walk.go(incident_s)
     script.act(CloseIncident("i1"))
-    records = logged(script)
+    records = records_with_fused(script)
     with closing(SegmentWriter(folder / "log")) as log:
         for t_ns, key, payload in records:
             log.write(t_ns, key, payload.replace(b"i1", name.encode()))

@@ -93,7 +93,7 @@ class AlarmManager:
                 continue
             if isinstance(verdict, Finding) and current is not None:
                 if current.is_open and not current.latched and current.about != verdict.about:
-                    yield _resolve(state, current, UNIT_REASSIGNED)
+                    yield _resolve_alarm(state, current, UNIT_REASSIGNED)
                 current = _same_subject(state, key, current, verdict)
             changed = self._follow(state, rule, key, unit.unit_id, current, verdict)
             if changed is not None:
@@ -121,7 +121,7 @@ class AlarmManager:
         else:
             _end_problem(state, part)
             if standing is not None:
-                yield _resolve(state, standing, coded("over-works-again", "works again"))
+                yield _resolve_alarm(state, standing, coded("over-works-again", "works again"))
 
     def acknowledge(self, state: StationState, by: str, action: AcknowledgeAlarm) -> Alarm | str:
         """Acknowledge an alarm; returns it, or the reason for a person why that is impossible."""
@@ -144,7 +144,7 @@ class AlarmManager:
         if alarm.rule == STATION_RULE:
             _end_problem(state, alarm.level)
         alarm.reason, alarm.note = action.reason, action.note
-        return _resolve(state, alarm, by)
+        return _resolve_alarm(state, alarm, by)
 
     def erase_names(self, state: StationState, unit: UnitState) -> None:
         """Erase texts of alarms about the unit's wearers, and notes of their resolution; the alarms
@@ -166,12 +166,12 @@ class AlarmManager:
         verdict: Finding | Clear,
     ) -> Alarm | None:
         if isinstance(verdict, Clear):
-            return None if current is None else _clear(state, rule, current, verdict)
+            return None if current is None else _clear_alarm(state, rule, current, verdict)
         if current is None or (not current.is_open and _is_new(state, rule, current, verdict)):
             return self._raise(state, key, rule.name, unit_id, verdict)
         if not current.is_open:
             return None
-        current.worst = _worst(current.worst, verdict)
+        current.worst = _worst_measured(current.worst, verdict)
         return _move_level(state, rule, current, verdict)
 
     def _raise(
@@ -216,7 +216,7 @@ def _station_fault(state: StationState, report: ReportProblem) -> Finding:
     return Finding(report.part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
 
 
-def _worst(so_far: float | None, finding: Finding) -> float | None:
+def _worst_measured(so_far: float | None, finding: Finding) -> float | None:
     if so_far is None or finding.measured is None:
         return finding.measured if so_far is None else so_far
     return (min if finding.is_low else max)(so_far, finding.measured)
@@ -316,7 +316,7 @@ def _is_new_occurrence(alarm: Alarm, finding: Finding) -> bool:
     return is_known or (finding.latched and is_other)
 
 
-def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:
+def _clear_alarm(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> Alarm | None:
     if not alarm.is_open:
         alarm.resolved_while_active = False
         return None
@@ -328,10 +328,10 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
     if has_stayed_s < rule.clear_after_s and not clear.at_once:
         return None
     is_others = clear.about is not None and clear.about != alarm.about
-    return _resolve(state, alarm, UNIT_REASSIGNED if is_others else clear.by)
+    return _resolve_alarm(state, alarm, UNIT_REASSIGNED if is_others else clear.by)
 
 
-def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
+def _resolve_alarm(state: StationState, alarm: Alarm, by: str) -> Alarm:
     alarm.state, alarm.by = AlarmState.RESOLVED, str(by)
     alarm.reason = code_of_text(by).code or alarm.reason
     alarm.mark_changed(state.t_ns)

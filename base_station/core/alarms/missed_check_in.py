@@ -38,7 +38,7 @@ class MissedCheckIn:
         return Finding(
             "overdue",
             EMERGENCY,
-            _code(duty),
+            _text_code(duty),
             AlarmParameters(
                 member=unit.name, duration_s=(onset_ns - duty.counts_from_ns) / NS_PER_S
             ),
@@ -49,7 +49,7 @@ class MissedCheckIn:
         )
 
 
-def _code(duty: Duty) -> str:
+def _text_code(duty: Duty) -> str:
     is_asked = duty.open_request_ns is not None
     if duty.confirmation is None:
         return "par-overdue-no-answer-yet" if is_asked else "par-overdue-unconfirmed"

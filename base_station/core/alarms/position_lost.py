@@ -37,7 +37,7 @@ class PositionLost:
             return Clear(seen_ns, coded("over-position-known", "the position is known again"))
         if seen_ns - place.lost_since_ns < self.after_s * NS_PER_S:
             return None
-        code, parameters = _found(unit, fused)
+        code, parameters = _code_and_parameters(unit, fused)
         return Finding(
             "lost",
             WARNING,
@@ -48,7 +48,7 @@ class PositionLost:
         )
 
 
-def _found(unit: UnitState, fused: FusedPosition) -> tuple[str, AlarmParameters]:
+def _code_and_parameters(unit: UnitState, fused: FusedPosition) -> tuple[str, AlarmParameters]:
     """Return code and parameters: the unit's tracker is lost, or the uncertainty too large."""
     position = unit.position
     if position is not None and position.path_quality is Quality.LOST:

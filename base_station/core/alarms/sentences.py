@@ -13,7 +13,7 @@ from base_station.fusion.gnss.fix_faults import FIX_FAULTS
 from shared.messages import AlarmParameters
 from shared.quality import Reason, code_of, in_words
 
-# Placeholders are fields of ``AlarmParameters``, or one of ``_shown``.
+# Placeholders are fields of ``AlarmParameters``, or one of ``_placeholder_values``.
 SENTENCES: Mapping[str, str] = {
     "mayday": "Mayday from {who}",
     "fall": "{who}: possible fall",
@@ -58,15 +58,15 @@ SENTENCES: Mapping[str, str] = {
 
 def sentence(code: str, parameters: AlarmParameters) -> str:
     """The English sentence.  Raises KeyError where the code is not in ``SENTENCES``."""
-    return SENTENCES[code].format_map(_shown(parameters))
+    return SENTENCES[code].format_map(_placeholder_values(parameters))
 
 
-def _shown(parameters: AlarmParameters) -> dict[str, object]:
+def _placeholder_values(parameters: AlarmParameters) -> dict[str, object]:
     """Values of the placeholders, by name."""
     shown: dict[str, object] = {
         name: getattr(parameters, name) for name in parameters.__struct_fields__
     }
-    shown["who"] = _who(parameters)
+    shown["who"] = _member_names(parameters)
     shown["reasons"] = in_words(_reasons_of(parameters.reasons))
     shown["fix_faults"] = ", ".join(FIX_FAULTS.get(one, one) for one in parameters.reasons)
     if parameters.duration_s is not None:
@@ -77,7 +77,7 @@ def _shown(parameters: AlarmParameters) -> dict[str, object]:
     return shown
 
 
-def _who(parameters: AlarmParameters) -> str:
+def _member_names(parameters: AlarmParameters) -> str:
     if parameters.member_before is None:
         return parameters.member or ""
     return f"{parameters.member} or, before, {parameters.member_before}"

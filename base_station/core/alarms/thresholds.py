@@ -29,7 +29,7 @@ def thresholds_of(
     """
     found = {}
     for rule_name, values in settings.items():
-        rule = _named(rules, rule_name)
+        rule = _rule_of_name(rules, rule_name)
         for name, value in values.items():
             require_threshold(rules, rule_name, name, value)
             if value != getattr(rule, name):
@@ -43,7 +43,7 @@ def thresholds_of(
 
 def require_threshold(rules: Sequence[AlarmRule], rule_name: str, name: str, value: float) -> None:
     """Raises ConfigError where no rule has such a threshold, or where it cannot have the value."""
-    limits = limits_of(_named(rules, rule_name))
+    limits = limits_of(_rule_of_name(rules, rule_name))
     where = f"alarms.{rule_name}.{name}"
     if name not in limits:
         known = nearest(name, limits, limits) if limits else f"{rule_name} has none"
@@ -54,7 +54,7 @@ def require_threshold(rules: Sequence[AlarmRule], rule_name: str, name: str, val
         raise ConfigError(f"{where}: {error}") from error
 
 
-def _named(rules: Sequence[AlarmRule], rule_name: str) -> AlarmRule:
+def _rule_of_name(rules: Sequence[AlarmRule], rule_name: str) -> AlarmRule:
     by_name = {rule.name: rule for rule in rules}
     if rule_name not in by_name:
         raise ConfigError(f"alarms.{rule_name} is no alarm; {nearest(rule_name, by_name, by_name)}")

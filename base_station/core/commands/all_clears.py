@@ -55,7 +55,7 @@ def give(state: StationState, by: str, action: SendCommand) -> Iterator[SentComm
         if _end_for(evacuation, recipients, action.command_id, state.t_ns) or evacuation is ended:
             yield evacuation
     _end_for_all(ended, state.t_ns)
-    yield _command(state, by, action, ended, recipients)
+    yield _all_clear_command(state, by, action, ended, recipients)
 
 
 def is_delivered(state: StationState, delivery: Delivery) -> bool:
@@ -92,7 +92,7 @@ def _stop_waiting(evacuation: SentCommand, delivery: Delivery, t_ns: int) -> Non
         delivery.expire(t_ns, ALL_CLEAR)
 
 
-def _command(
+def _all_clear_command(
     state: StationState, by: str, action: SendCommand, ended: SentCommand, recipients: list[str]
 ) -> SentCommand:
     expiries_ns = (ended.expires_ns_of(one) for one in ended.deliveries.values())

@@ -38,7 +38,7 @@ _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
     """Create a new command.  Raises UserError where it is not valid or has no recipient."""
-    _check(state, action)
+    _require_valid_command(state, action)
     recipients = _recipients(state, action)
     command = SentCommand(
         command_id=action.command_id,
@@ -251,7 +251,7 @@ def check_new(state: StationState, action: SendCommand) -> None:
         )
 
 
-def _check(state: StationState, action: SendCommand) -> None:
+def _require_valid_command(state: StationState, action: SendCommand) -> None:
     check_new(state, action)
     if action.kind is CommandKind.UNKNOWN:
         raise UserError(
@@ -336,8 +336,8 @@ def _drop_oldest_closed(state: StationState) -> None:
     ended.
     """
     closed = [one for one in state.commands.values() if _is_done_with(state, one)]
-    standing = [one for one in closed if _stands(one)]
-    over = [one for one in closed if not _stands(one)]
+    standing = [one for one in closed if _is_open_evacuation(one)]
+    over = [one for one in closed if not _is_open_evacuation(one)]
     for commands in (standing, over):
         for command in commands[: max(0, len(commands) - CLOSED_KEPT + 1)]:
             del state.commands[command.command_id]
@@ -349,5 +349,5 @@ def _is_done_with(state: StationState, command: SentCommand) -> bool:
     return not any(order_ends.is_owed(state, command, one) for one in command.deliveries.values())
 
 
-def _stands(command: SentCommand) -> bool:
+def _is_open_evacuation(command: SentCommand) -> bool:
     return command.kind is CommandKind.EVACUATE and command.ended_ns is None

@@ -32,7 +32,9 @@ def send_again(state: StationState, action: SendCommand) -> SentCommand:
         )
     if command.ended_ns is not None:
         raise UserError(coded("order-over", "this order is over: give a new one"))
-    recipients = [one for one in _unanswered(command) if action.unit_id in ("", one.unit_id)]
+    recipients = [
+        one for one in _unanswered_deliveries(command) if action.unit_id in ("", one.unit_id)
+    ]
     if not recipients:
         raise UserError(
             coded(
@@ -66,5 +68,5 @@ def current_id(command: SentCommand, delivery: Delivery) -> str:
     return delivery.repeat_id or command.command_id
 
 
-def _unanswered(command: SentCommand) -> list[Delivery]:
+def _unanswered_deliveries(command: SentCommand) -> list[Delivery]:
     return [one for one in command.deliveries.values() if one.acknowledged_ns is None]

@@ -304,7 +304,7 @@ def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
         ):
             return _order_without(action, t_ns, erasure)
         case CheckIn(person_ids=people) if erasure.incident_id and erasure.is_of(people, t_ns):
-            people = _others(people, t_ns, erasure)
+            people = _people_kept(people, t_ns, erasure)
             of = action.incident_id if people else erasure.incident_id
             return msgspec.structs.replace(action, person_ids=people, incident_id=of)
         case ResolveAlarm(alarm_id=alarm_id, note=note) if note and erasure.covers_alarm(alarm_id):
@@ -318,14 +318,14 @@ def _order_without(order: SendCommand, t_ns: int, erasure: Erasure) -> SendComma
     text = ERASED_TEXT if order.text else ""
     if not erasure.incident_id:
         return msgspec.structs.replace(order, text=text)
-    people = _others(order.person_ids, t_ns, erasure)
+    people = _people_kept(order.person_ids, t_ns, erasure)
     if people:
         return msgspec.structs.replace(order, person_ids=people)
     of = order.incident_id or erasure.incident_id  # no other record holds it any more
     return msgspec.structs.replace(order, text=text, person_ids=(), incident_id=of)
 
 
-def _others(person_ids: tuple[str, ...], t_ns: int, erasure: Erasure) -> tuple[str, ...]:
+def _people_kept(person_ids: tuple[str, ...], t_ns: int, erasure: Erasure) -> tuple[str, ...]:
     """People who are not erased, or are outside the incident at that time."""
     gone = erasure.people_at(t_ns)
     return tuple(one for one in person_ids if one not in gone)

@@ -43,13 +43,13 @@ def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
     """
     match action:
         case SetPin():
-            return _set(state, [_place_pin(state, by, action)])
+            return _set_pins(state, [_place_pin(state, by, action)])
         case StartTogether():
-            return _set(state, _start_pins(state, by, action))
+            return _set_pins(state, _start_pins(state, by, action))
         case SetMeeting():
-            return _set(state, [_meeting_pin(state, by, action)])
+            return _set_pins(state, [_meeting_pin(state, by, action)])
         case RemovePin():
-            return _remove(state, action.pin_id)
+            return _remove_pin(state, action.pin_id)
         case PlaceBeacon():
             return _place_beacon(state, by, action)
         case RemoveBeacon():
@@ -107,8 +107,11 @@ def put(site: SiteState, pin: Pin) -> None:
     site.pin_verdicts[pin.pin_id] = WAITING
 
 
-def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
-    """Raises UserError for pins of several sites, or for too many."""
+def _set_pins(state: StationState, pins: Sequence[Pin]) -> set[str]:
+    """Set pins that belong together; returns the ids of the units whose paths they concern.
+
+    Raises UserError for pins of several sites, or for too many.
+    """
     sites = {state.units[unit_id].site_id for pin in pins for unit_id in units_of(pin)}
     if len(sites) > 1:
         raise UserError(
@@ -181,7 +184,7 @@ def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
     )
 
 
-def _remove(state: StationState, pin_id: str) -> set[str]:
+def _remove_pin(state: StationState, pin_id: str) -> set[str]:
     group = f"{pin_id}:"
     changed: set[str] = set()
     for site in state.sites.values():

@@ -105,8 +105,8 @@ def solve_pins(
         pins = [pin for pin in site.pins.values() if unit_id in units_of(pin)]
         solution: Solution | None = None
         if history is not None and history.begin_ns is not None:
-            places, waiting = _places(state, solver, unit_id, history, pins)
-            _await(history, pins)
+            places, waiting = _pin_constraints(state, solver, unit_id, history, pins)
+            _await_next_pin(history, pins)
             if places:
                 solution = solver.solve(state, unit_id, places)
         else:
@@ -135,13 +135,13 @@ def _store_verdict(site: SiteState, pin_id: str, found: Mapping[str, PinVerdict]
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
     reasons = [one for one in of_units.values() if one.text]
     worst_reasons = dict.fromkeys(one.coded_text for one in reasons if one.state == worst.state)
-    text = reduce(_joined, worst_reasons or [one.coded_text for one in reasons[:1]], "")
+    text = reduce(_joined_reasons, worst_reasons or [one.coded_text for one in reasons[:1]], "")
     site.pin_verdicts[pin_id] = msgspec.structs.replace(
         worst, text=str(text), text_code=code_of_text(text), of_units=tuple(of_units.items())
     )
 
 
-def _joined(before: str, last: str) -> str:
+def _joined_reasons(before: str, last: str) -> str:
     return coded("pin-reasons", "{before}. {last}", before=before, last=last) if before else last
 
 
@@ -202,7 +202,7 @@ def renumbered_trail(
     return again
 
 
-def _places(
+def _pin_constraints(
     state: StationState,
     solver: PathSolver,
     unit_id: str,
@@ -214,7 +214,7 @@ def _places(
     waiting: dict[str, str] = {}
     for pin in pins:
         if pin.kind == "meeting":
-            place = _met(state, solver, unit_id, history, pin)
+            place = _encounter_constraint(state, solver, unit_id, history, pin)
         else:
             place = place_of(state.site_of(unit_id), history, pin)
         if isinstance(place, str):
@@ -224,7 +224,7 @@ def _places(
     return places, waiting
 
 
-def _met(
+def _encounter_constraint(
     state: StationState, solver: PathSolver, unit_id: str, history: PathHistory, pin: Pin
 ) -> PositionConstraint | str:
     """Position constraint of an encounter: the place of the other unit, solved without
@@ -265,7 +265,7 @@ def _of_unit(unit_id: str, reason: str) -> str:
     return coded("pin-reason-of-unit", "{unit}: {reason}", unit=unit_id, reason=reason)
 
 
-def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
+def _await_next_pin(history: PathHistory, pins: Sequence[Pin]) -> None:
     """Note the time of the first pin after the end of the path; at that time the path is solved
     again.
     """
@@ -293,7 +293,7 @@ def _conflict_text(pin: Pin, other: Pin | None, unit_id: str, verdict: Verdict) 
     against = (
         coded("pin-against-fixes", "{path} and the satellite fixes", path=path)
         if other is None
-        else coded("pin-against-pin", "{pin} and {path}", pin=_describe(other, pin), path=path)
+        else coded("pin-against-pin", "{pin} and {path}", pin=_pin_name(other, pin), path=path)
     )
     away = Measure(verdict.residual_m, f"{verdict.residual_m:.0f} m")
     times = round(verdict.sigmas)
@@ -337,7 +337,7 @@ def _conflict_text(pin: Pin, other: Pin | None, unit_id: str, verdict: Verdict) 
     )
 
 
-def _describe(pin: Pin, of: Pin) -> str:
+def _pin_name(pin: Pin, of: Pin) -> str:
     """Name a contradicted pin for a person: by its note, else by its time; a start has no time."""
     if pin.kind == "meeting":
         partner = pin.unit_id if pin.unit_id != of.unit_id else pin.other_id

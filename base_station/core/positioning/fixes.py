@@ -27,7 +27,7 @@ LATE_NS = 5 * NS_PER_S  # an older fix came from a journal
 def apply_fix(state: StationState, fusers: UnitFusers, unit: UnitState, fix: GpsFix) -> FixVerdict:
     """Apply a fix; the verdict gives the reason where it is not used."""
     place = place_fix(state, unit, fix, fusers.plain(unit).estimate)
-    verdict = place if isinstance(place, FixVerdict) else _update(state, fusers, unit, place)
+    verdict = place if isinstance(place, FixVerdict) else _update_fusers(state, fusers, unit, place)
     unit.gps = _gps_after(unit.gps, verdict, state.t_ns)
     if verdict.reason:
         unit.count_rejected(verdict.reason)
@@ -94,7 +94,7 @@ def without_common_mode_error(state: StationState, unit: UnitState, fix: PlaceFi
     return fix
 
 
-def _update(
+def _update_fusers(
     state: StationState, fusers: UnitFusers, unit: UnitState, place: PlaceFix
 ) -> FixVerdict:
     """Update the fusers.  The path is solved again later, with the raw fix and the station's

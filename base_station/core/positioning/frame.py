@@ -48,14 +48,14 @@ def reframe(state: StationState, site_id: str, move: RigidTransform2D) -> None:
         history.reframe(move.turn_rad, *shift_m, move.down_m)
     for unit in state.units_on(site_id):
         trails = unit.trails
-        trails.shown = [_moved(step, move) for step in trails.shown]
+        trails.shown = [_moved_step(step, move) for step in trails.shown]
         if trails.unpinned is not None:
-            trails.unpinned = [_moved(step, move) for step in trails.unpinned]
+            trails.unpinned = [_moved_step(step, move) for step in trails.unpinned]
     site.learnt_building = site.learnt_building.reframed(move.turn_rad, *shift_m)
     reframe_pins(site, move.turn_rad, *shift_m)
     site.learnt_floors.reframe(move.turn_rad, *shift_m, move.down_m)
 
 
-def _moved(step: TrailStep, move: RigidTransform2D) -> TrailStep:
+def _moved_step(step: TrailStep, move: RigidTransform2D) -> TrailStep:
     north_m, east_m = move.apply(step.north_m, step.east_m)
     return msgspec.structs.replace(step, north_m=north_m, east_m=east_m)

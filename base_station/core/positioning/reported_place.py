@@ -23,7 +23,7 @@ def apply_reported_place(
     none.
     """
     site = state.site_of(fused.unit_id)
-    pin = _newest(site, history, fused.unit_id)
+    pin = _newest_pin_ahead(site, history, fused.unit_id)
     place = None if pin is None else place_at(site, pin, pin.t_ns)
     if pin is None or not isinstance(place, PositionConstraint):
         return fused
@@ -54,7 +54,7 @@ def apply_reported_place(
     )
 
 
-def _newest(site: SiteState, history: PathHistory, unit_id: str) -> Pin | None:
+def _newest_pin_ahead(site: SiteState, history: PathHistory, unit_id: str) -> Pin | None:
     if history.awaited_ns is None or history.end_ns is None:  # nearly always
         return None
     ahead_ns = history.end_ns + NEAR_NS

@@ -80,24 +80,24 @@ def insert_into_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
 def bound(trail: list[TrailStep]) -> None:
     """Thin the trail where it is too long."""
     if len(trail) > TRAIL_POINTS:
-        trail[:] = _thinned(trail)
+        trail[:] = _thinned_trail(trail)
 
 
-def _thinned(trail: list[TrailStep]) -> list[TrailStep]:
+def _thinned_trail(trail: list[TrailStep]) -> list[TrailStep]:
     """At most ``RECENT_POINTS`` and ``OLDER_POINTS``.  Changes of the floor and ends of gaps stay;
     if these alone are too many, the oldest are dropped.
     """
     older, recent = trail[:-RECENT_POINTS], trail[-RECENT_POINTS:]
     tolerance_m = TOLERANCE_M
     for _ in range(_DOUBLINGS):
-        older = _simplified(older, tolerance_m)
+        older = _simplified_trail(older, tolerance_m)
         if len(older) <= OLDER_POINTS:
             break
         tolerance_m *= 2.0
     return older[-OLDER_POINTS:] + recent
 
 
-def _simplified(steps: list[TrailStep], tolerance_m: float) -> list[TrailStep]:
+def _simplified_trail(steps: list[TrailStep], tolerance_m: float) -> list[TrailStep]:
     places_m = np.array([(step.north_m, step.east_m) for step in steps])
     begins = [
         number

@@ -84,7 +84,7 @@ def _red_causes(unit: UnitState) -> Iterator[Trust]:
         yield _of_quality("red", fused)
     within_m = _within_m(fused)
     if within_m > RED_M:
-        yield _imprecise("red", within_m)
+        yield _trust_of_imprecise("red", within_m)
 
 
 def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
@@ -95,7 +95,7 @@ def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
         yield _no_contact("amber")
     within_m = _within_m(fused)
     if within_m > AMBER_M:
-        yield _imprecise("amber", within_m)
+        yield _trust_of_imprecise("amber", within_m)
     if conflicts:
         which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
         text = coded("doubt-pins", "{count} the trail", count=Measure(conflicts, which))
@@ -123,7 +123,7 @@ def _no_contact(level: Level) -> Trust:
     return Trust(level, text, "no message")
 
 
-def _imprecise(level: Level, within_m: float) -> Trust:
+def _trust_of_imprecise(level: Level, within_m: float) -> Trust:
     text = coded("doubt-place", "only known to {within_m:.0f} m", within_m=round(within_m))
     return Trust(level, text, "place only roughly known")
 

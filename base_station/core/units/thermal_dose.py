@@ -39,13 +39,13 @@ def add_live(intervals: list[ExposureInterval], boot_id: int, t_ns: int, degc: f
     new = ExposureInterval(boot_id, t_ns, degc, t_ns, degc)
     last = intervals[-1] if intervals else None
     if last is None or last.boot_id != boot_id or t_ns < last.last_ns:  # its clock may be set back
-        _append(intervals, new)
+        _append_interval(intervals, new)
         return 0.0
-    added = _between(last, new)
+    added = _dose_between(last, new)
     if t_ns - last.last_ns <= JOINED_NS:
         last.last_ns, last.last_degc = t_ns, degc
     else:
-        _append(intervals, new)
+        _append_interval(intervals, new)
     return added
 
 
@@ -54,14 +54,14 @@ def add_late(intervals: list[ExposureInterval], boot_id: int, t_ns: int, degc: f
     if any(one.boot_id == boot_id and one.first_ns <= t_ns <= one.last_ns for one in intervals):
         return 0.0
     new = ExposureInterval(boot_id, t_ns, degc, t_ns, degc)
-    row = _place(intervals, new)
+    row = _insertion_row(intervals, new)
     before = _of_run(intervals, row - 1, boot_id)
     after = _of_run(intervals, row, boot_id)
-    added = _between(before, new) + _between(new, after) - _between(before, after)
+    added = _dose_between(before, new) + _dose_between(new, after) - _dose_between(before, after)
     intervals.insert(row, new)
-    _join(intervals, row + 1)
-    _join(intervals, row)
-    _bound(intervals)
+    _join_with_previous(intervals, row + 1)
+    _join_with_previous(intervals, row)
+    _limit_count(intervals)
     return added
 
 
@@ -72,7 +72,7 @@ def restart_intervals(intervals: list[ExposureInterval]) -> None:
         last.first_ns, last.first_degc = last.last_ns, last.last_degc
 
 
-def _place(intervals: list[ExposureInterval], new: ExposureInterval) -> int:
+def _insertion_row(intervals: list[ExposureInterval], new: ExposureInterval) -> int:
     """Row for a new interval: before the later ones of its run, else behind all of that run."""
     rows = [row for row, one in enumerate(intervals) if one.boot_id == new.boot_id]
     later = (row for row in rows if intervals[row].first_ns > new.last_ns)
@@ -84,7 +84,7 @@ def _of_run(intervals: list[ExposureInterval], row: int, boot_id: int) -> Exposu
     return intervals[row] if is_there else None
 
 
-def _between(before: ExposureInterval | None, after: ExposureInterval | None) -> float:
+def _dose_between(before: ExposureInterval | None, after: ExposureInterval | None) -> float:
     """Dose of a gap, by the cooler of the temperatures at its ends beyond the first seconds."""
     if before is None or after is None:
         return 0.0
@@ -94,28 +94,28 @@ def _between(before: ExposureInterval | None, after: ExposureInterval | None) ->
     return dose_of(before.last_degc, known_s) + dose_of(cooler_degc, elapsed_s - known_s)
 
 
-def _join(intervals: list[ExposureInterval], row: int) -> None:
+def _join_with_previous(intervals: list[ExposureInterval], row: int) -> None:
     """Join an interval with the one before, where no reading is missing between them."""
     if not 0 < row < len(intervals):
         return
     silent_ns = _silence_ns(intervals[row - 1], intervals[row])
     if silent_ns is not None and silent_ns <= JOINED_NS:
-        _merge(intervals, row)
+        _merge_with_previous(intervals, row)
 
 
-def _append(intervals: list[ExposureInterval], new: ExposureInterval) -> None:
+def _append_interval(intervals: list[ExposureInterval], new: ExposureInterval) -> None:
     intervals.append(new)
-    _bound(intervals)
+    _limit_count(intervals)
 
 
-def _bound(intervals: list[ExposureInterval]) -> None:
+def _limit_count(intervals: list[ExposureInterval]) -> None:
     """Bound the number of intervals; of runs without a silence between any two the oldest goes."""
     if len(intervals) <= MAX_INTERVALS:
         return
     silences = ((_silence_ns(*both), row) for row, both in enumerate(pairwise(intervals), start=1))
     known = [(silent_ns, row) for silent_ns, row in silences if silent_ns is not None]
     if known:
-        _merge(intervals, min(known)[1])
+        _merge_with_previous(intervals, min(known)[1])
     else:
         del intervals[0]
 
@@ -127,7 +127,7 @@ def _silence_ns(before: ExposureInterval, after: ExposureInterval) -> int | None
     return after.first_ns - before.last_ns
 
 
-def _merge(intervals: list[ExposureInterval], row: int) -> None:
+def _merge_with_previous(intervals: list[ExposureInterval], row: int) -> None:
     """Merge an interval with the one before; later readings between them are ignored."""
     before, after = intervals[row - 1], intervals[row]
     before.last_ns, before.last_degc = after.last_ns, after.last_degc

@@ -81,7 +81,7 @@ class Accounts:
         self._let_in.forget_all()
         password_hash = "" if password is None else self._passwords.hash(password)
         with self._store.write() as session:
-            user = _user(session, username)
+            user = _required_user(session, username)
             if role is not None and role is not Role.ADMINISTRATOR:
                 _keep_an_administrator(session, user)
             changed = password is not None or (role is not None and role.word != user.role)
@@ -100,7 +100,7 @@ class Accounts:
     def remove_user(self, username: str) -> None:
         self._let_in.forget_all()
         with self._store.write() as session:
-            user = _user(session, username)
+            user = _required_user(session, username)
             _keep_an_administrator(session, user)
             end(session, user)
 
@@ -124,7 +124,7 @@ class Accounts:
         """End all sessions of a user, who has to log in again."""
         self._let_in.forget_all()
         with self._store.write() as session:
-            _end_sessions(session, _user(session, username))
+            _end_sessions(session, _required_user(session, username))
 
     def verify_password(self, username: str, password: str) -> bool:
         """Check a password; takes the same time for an unknown name."""
@@ -153,7 +153,7 @@ class Accounts:
         """
         with self._store.write() as session:
             expires_ns = self._clock.utc_ns() + SESSION_S * NS_PER_S
-            generation = _user(session, username).generation
+            generation = _required_user(session, username).generation
             return self._begin_session(session, username, generation, expires_ns)
 
     def _begin_session(
@@ -273,7 +273,7 @@ class Accounts:
                         most=MOST_TOKENS,
                     )
                 )
-            if role > Role.of(_user(session, username).role):
+            if role > Role.of(_required_user(session, username).role):
                 raise UserError(
                     coded(
                         "token-role-too-high",
@@ -334,7 +334,7 @@ def _is_own(username: str) -> ColumnElement[bool]:
     return and_(ApiToken.username == username, ApiToken.unit_id == "")
 
 
-def _user(session: Session, username: str) -> User:
+def _required_user(session: Session, username: str) -> User:
     user = session.get(User, username)
     if user is None:
         raise UserError(coded("user-unknown", "there is no user {username!r}", username=username))

@@ -67,12 +67,12 @@ _ERASED_PERSON = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 def forget_in(session: Session, erasure: Erasure) -> None:
     """Erase in all tables; every statement may run again."""
     for one in erasure.wearings:
-        session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
-        session.execute(delete(UnitStart).where(_within(UnitStart, one)))
+        session.execute(delete(TrackPoint).where(_is_of_wearing(TrackPoint, one)))
+        session.execute(delete(UnitStart).where(_is_of_wearing(UnitStart, one)))
     _delete_computed_results(session, erasure)
-    _alarms(session, erasure)
-    _audit(session, erasure)
-    _imports(session, erasure)
+    _erase_alarms(session, erasure)
+    _erase_audit(session, erasure)
+    _erase_imports(session, erasure)
     if erasure.person_id:
         of_person = Assignment.person_id == erasure.person_id
         session.execute(update(Assignment).where(of_person).values(_ERASED_PERSON))
@@ -83,7 +83,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
             _cut_out(session, one)
 
 
-def _imports(session: Session, erasure: Erasure) -> None:
+def _erase_imports(session: Session, erasure: Erasure) -> None:
     """Erase imports of a forgotten incident; of the others, people in the names of files."""
     if erasure.incident_id:
         session.execute(delete(ImportRow).where(ImportRow.incident_id == erasure.incident_id))
@@ -196,11 +196,11 @@ def ids_of(session: Session, name: str) -> set[str]:
     return ids | {one.partition(" ")[0] for one in details if one.partition(" ")[2] == name}
 
 
-def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[bool]:
+def _is_of_wearing(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[bool]:
     return and_(table.unit_id == one.unit_id, table.t_ns >= one.from_ns, table.t_ns < one.until_ns)
 
 
-def _alarms(session: Session, erasure: Erasure) -> None:
+def _erase_alarms(session: Session, erasure: Erasure) -> None:
     for alarm in session.scalars(select(AlarmRow)):
         raised = alarm.unit_id, alarm.raised_ns
         covered = erasure.covers(*raised)
@@ -224,7 +224,7 @@ def _rewrite_alarm(session: Session, alarm: AlarmRow, names: _Names, covered: bo
             row.note = ERASED_TEXT if covered else names.erased(row.note)
 
 
-def _audit(session: Session, erasure: Erasure) -> None:
+def _erase_audit(session: Session, erasure: Erasure) -> None:
     """Erase names, texts and places in the audit; kind, time and author of an action stay."""
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
@@ -242,7 +242,7 @@ def _audit(session: Session, erasure: Erasure) -> None:
             names = _Names(erasure, erasure.people_in_alarm(*raised))
             entry.detail = names.erased(entry.detail)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
-        entry.detail = _apart(entry, erasure)
+        entry.detail = _remaining_detail(entry, erasure)
     mine = AuditEntry.detail.startswith(f"{erasure.person_id} ", autoescape=True)
     for entry in session.scalars(select(AuditEntry).where(_NAMED, mine)):
         entry.detail = f"{erasure.person_id} {ERASED_TEXT}"
@@ -308,7 +308,7 @@ def _alarm_raised(entry: AuditEntry) -> tuple[str, int] | None:
     return raised_of(noted.alarm_id)
 
 
-def _apart(entry: AuditEntry, erasure: Erasure) -> str:
+def _remaining_detail(entry: AuditEntry, erasure: Erasure) -> str:
     """Detail of an action at the other station, which may be recorded long after its time."""
     try:
         done = msgspec.json.decode(entry.detail, type=DoneApart)

@@ -79,7 +79,7 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
             if not (isinstance(action.action, ReportProblem) or is_inserted(action)):
                 # Those two are no person's doing.
                 _audit(session, action.header.t_utc_ns, action)
-            _action(session, action.header.t_utc_ns, action)
+            _project_action(session, action.header.t_utc_ns, action)
         _memberships(session, projection)
         for change in projection.alarms:
             _alarm(session, change)
@@ -95,7 +95,7 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
     return left_out
 
 
-def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
+def _project_action(session: Session, t_ns: int, done: OperatorAction) -> None:
     key = {"action_id": done.action_id, "t_ns": t_ns}
     match done.action:
         case OpenIncident(incident_id=incident_id, name=name, dispatch_number=number):

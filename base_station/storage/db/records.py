@@ -71,7 +71,7 @@ def _points_of(
     )
 
 
-def _in(
+def _is_in_window(
     window: Window, t_ns: InstrumentedAttribute[int]
 ) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     return t_ns >= window.from_ns, t_ns < window.until_ns
@@ -95,7 +95,7 @@ class Records:
 
     def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[IncidentRow]:
         """Return the incidents opened in the window, newest first (``pages.newest``)."""
-        wanted = select(IncidentRow).where(*_in(opened, IncidentRow.opened_ns))
+        wanted = select(IncidentRow).where(*_is_in_window(opened, IncidentRow.opened_ns))
         with self._store.read() as session:
             return newest(session, wanted, IncidentRow.opened_ns, IncidentRow.incident_id, limit)
 
@@ -188,7 +188,7 @@ class Records:
         """Return the alarms raised in the window, newest first (``pages.newest``); with an
         incident, those of its members and of the station itself.
         """
-        wanted = select(AlarmRow).where(*_in(raised, AlarmRow.raised_ns))
+        wanted = select(AlarmRow).where(*_is_in_window(raised, AlarmRow.raised_ns))
         if incident is not None and incident.has_members:
             wanted = wanted.where(was_member(incident, AlarmRow.unit_id, AlarmRow.raised_ns))
         with self._store.read() as session:
@@ -301,6 +301,6 @@ class Records:
 
     def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
         """Actions in the window, newest first (``pages.newest``)."""
-        wanted = select(AuditEntry).where(*_in(done, AuditEntry.t_ns))
+        wanted = select(AuditEntry).where(*_is_in_window(done, AuditEntry.t_ns))
         with self._store.read() as session:
             return newest(session, wanted, AuditEntry.t_ns, AuditEntry.number, limit)

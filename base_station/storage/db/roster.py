@@ -244,7 +244,7 @@ class Roster:
     def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
         """Return the assignments that were valid at some time of the window, oldest first."""
         with self._store.read() as session:
-            held = select(Assignment).where(*_held(from_ns, until_ns))
+            held = select(Assignment).where(*_overlaps(from_ns, until_ns))
             return session.scalars(held.order_by(Assignment.from_ns)).all()
 
     def newest_assignments(self, from_ns: int, until_ns: int, limit: int) -> Sequence[Assignment]:
@@ -252,7 +252,7 @@ class Roster:
         (``pages.newest``).
         """
         with self._store.read() as session:
-            wanted = select(Assignment).where(*_held(from_ns, until_ns))
+            wanted = select(Assignment).where(*_overlaps(from_ns, until_ns))
             return newest(session, wanted, Assignment.from_ns, Assignment.action_id, limit)
 
     def _load_people(self) -> dict[str, KnownPerson]:
@@ -269,7 +269,7 @@ def _on_roster(session: Session, person_id: str) -> PersonRow | None:
     return None if person is None or person.removed_ns is not None else person
 
 
-def _held(from_ns: int, until_ns: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+def _overlaps(from_ns: int, until_ns: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     over = Assignment.until_ns.is_not(None) & (Assignment.until_ns <= from_ns)
     return Assignment.from_ns < until_ns, ~over
 

@@ -135,9 +135,9 @@ class Transfer:
             before_bytes += file.size_bytes
             self.done_bytes = before_bytes
         self.state = TransferState.DONE
-        self.problem = self._flaws()
+        self.problem = self._incomplete_files_text()
 
-    def _flaws(self) -> str:
+    def _incomplete_files_text(self) -> str:
         """Sentence about files that are gone or not proven; empty: there are none."""
         gone = coded(
             "recording-files-gone",

@@ -178,7 +178,7 @@ class BufferReader:
         if not count:
             return Block()
         raw = self._layout.decode(frames)
-        times_ns, is_placed = self._times.place(raw[TIMESTAMP], arrival_ns)
+        times_ns, is_placed = self._times.to_monotonic(raw[TIMESTAMP], arrival_ns)
         self._monitor.count(times_ns, count - len(times_ns))
         values: dict[str, Floats] = {}
         for kind, axes in self._axes.items():

@@ -1,8 +1,8 @@
 """Times of captured samples, on this machine's monotonic clock.
 
-A driver stamps a sample as it is taken, by a clock that can be chosen since Linux 4.8: the
-monotonic one.  Where it cannot be chosen, stamps are laid onto the monotonic clock by when they
-come.  A sample with an impossible time stamp is dropped.
+A driver gives each sample the time at which it was taken.  Since Linux 4.8 the clock of these time
+stamps can be set, here to the monotonic one.  Where it cannot be set, time stamps are converted to
+the monotonic clock by their time of arrival.  A sample with an implausible time stamp is dropped.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ _OLD_NS = 10 * NS_PER_S  # longer than a buffer holds
 class SampleTimes(Protocol):
     @property
     def implausible(self) -> int:
-        """Samples of a time that cannot be."""
+        """Number of samples with an implausible time stamp."""
         ...
 
-    def place(
+    def to_monotonic(
         self, stamps_ns: Nanoseconds, arrival_ns: int
     ) -> tuple[Nanoseconds, NDArray[np.bool_]]:
-        """Return the times of the samples that have a place, and which they are."""
+        """Return the monotonic times of the plausible samples, and the mask of these samples."""
         ...
 
     def take_events(self) -> list[str]: ...
 
 
 def choose_clock(device: Path) -> SampleTimes:
-    """Choose the monotonic clock where the device lets one.  Raises OSError."""
+    """Set the device's clock to the monotonic one where that is possible.  Raises OSError."""
     if read_if_there(device / _CLOCK) is None:
         return MappedTimes()
     write_text(device / _CLOCK, _MONOTONIC)
@@ -49,13 +49,13 @@ def choose_clock(device: Path) -> SampleTimes:
 
 
 class MonotonicTimes:
-    """Times that the driver takes from the monotonic clock."""
+    """Time stamps that are of the monotonic clock already."""
 
     def __init__(self) -> None:
         self._last_ns = 0
         self.implausible = 0
 
-    def place(
+    def to_monotonic(
         self, stamps_ns: Nanoseconds, arrival_ns: int
     ) -> tuple[Nanoseconds, NDArray[np.bool_]]:
         can_be = (stamps_ns <= arrival_ns + _AHEAD_NS) & (stamps_ns > arrival_ns - _OLD_NS)
@@ -73,7 +73,7 @@ class MonotonicTimes:
 
 
 class MappedTimes:
-    """Times of another clock, laid onto the monotonic one by when they come."""
+    """Time stamps of another clock, converted by their time of arrival."""
 
     def __init__(self) -> None:
         self._clock = DeviceClock()
@@ -82,10 +82,10 @@ class MappedTimes:
     def implausible(self) -> int:
         return self._clock.implausible
 
-    def place(
+    def to_monotonic(
         self, stamps_ns: Nanoseconds, arrival_ns: int
     ) -> tuple[Nanoseconds, NDArray[np.bool_]]:
-        """The newest stamp of a read shows how long the others waited."""
+        """The newest time stamp of a read shows how long the other samples waited."""
         newest_ns = int(stamps_ns.max(initial=0))
         times_ns = [
             self._clock.place(stamp_ns, arrival_ns - min(newest_ns - stamp_ns, NS_PER_S))

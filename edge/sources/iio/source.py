@@ -1,7 +1,7 @@
 """Source of an inertial sensor that the kernel's Industrial I/O drives.
 
-While a device is missing, does not answer or shows what cannot be used, the source says why and
-tries again, and never ends.  A sample is one that the sensor took: none is invented.
+While a device is missing, does not answer or gives unusable values, the source reports the reason
+and tries again; it never ends.  Every sample was measured: none is interpolated or repeated.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from tests.rig.imported_files import (
     exif_time,
     in_ns,
     line,
-    logged,
+    records_with_fused,
     write_gpx,
     write_kml,
     write_photo,
@@ -181,7 +181,7 @@ def test_torn_incident_is_read_without_names(tmp_path: Path) -> None:
         script.position("FF-01", float(second), 0.0, distance_m=float(second))
         script.tick()
     writer = SegmentWriter(tmp_path / "log")
-    for record in logged(script):
+    for record in records_with_fused(script):
         writer.write(*record)
     writer.close()
     (path,) = (tmp_path / "log").glob("*.mcap")

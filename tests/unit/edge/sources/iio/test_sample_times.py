@@ -21,16 +21,16 @@ def ns(*seconds: float) -> np.ndarray:
 
 def test_stamps_of_the_monotonic_clock_are_times() -> None:
     times = MonotonicTimes()
-    placed, which = times.place(ns(999.98, 999.99), NOW_NS)
+    placed, which = times.to_monotonic(ns(999.98, 999.99), NOW_NS)
     assert placed.tolist() == ns(999.98, 999.99).tolist()
     assert which.all()
 
 
 def test_a_stamp_that_repeats_another_one_or_cannot_be_has_no_place() -> None:
     times = MonotonicTimes()
-    times.place(ns(999.0), NOW_NS)
+    times.to_monotonic(ns(999.0), NOW_NS)
     stamps = ns(999.0, 999.1, 0.0, 999.1, 2e9, 999.05, 999.2)
-    placed, which = times.place(stamps, NOW_NS)
+    placed, which = times.to_monotonic(stamps, NOW_NS)
     assert placed.tolist() == ns(999.1, 999.2).tolist()
     assert which.tolist() == [False, True, False, False, False, False, True]
     assert times.implausible == 2
@@ -38,14 +38,14 @@ def test_a_stamp_that_repeats_another_one_or_cannot_be_has_no_place() -> None:
 
 def test_no_stamps_are_no_times() -> None:
     for times in (MonotonicTimes(), MappedTimes()):
-        placed, which = times.place(ns(), NOW_NS)
+        placed, which = times.to_monotonic(ns(), NOW_NS)
         assert (len(placed), len(which)) == (0, 0)
 
 
 def test_stamps_of_the_wall_clock_are_laid_onto_the_monotonic_one() -> None:
     times = MappedTimes()
     epoch_s = 1.8e9
-    placed, which = times.place(ns(*(epoch_s + k * 0.0025 for k in range(20))), NOW_NS)
+    placed, which = times.to_monotonic(ns(*(epoch_s + k * 0.0025 for k in range(20))), NOW_NS)
     assert which.all()
     assert placed[-1] == pytest.approx(NOW_NS, abs=1000)
     assert np.diff(placed) == pytest.approx(2_500_000, abs=1000)
