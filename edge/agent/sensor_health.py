@@ -1,14 +1,18 @@
 """Monitor of lasting faults of an inertial sensor.  The tracker handles single bad samples: it
 leaves them out and names them in the position's reasons.
+
+Each batch is examined as a whole: a recording that is tracked again has a second of samples in
+each, an agent some hundredths.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from edge.samples import ImuBatch
+from edge.samples import Floats, ImuBatch
 from shared.clock import NS_PER_S
 from shared.coded_text import coded
 
@@ -17,6 +21,10 @@ _TURNING_RADPS = 0.5  # change of the gyroscope in a swing, at least
 _SHAKING_MPS2 = 2.0  # change of the accelerometer in a swing, at least
 _MOVED_NS = NS_PER_S // 5  # a swing or two
 _LONGEST_STEP_NS = NS_PER_S // 10  # motion in a longer gap is unknown
+
+Times = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+Fault = tuple[int, str]  # row of the batch at which it is found, text
 
 
 class SensorHealth:
@@ -36,46 +44,46 @@ class SensorHealth:
             coded("gyro-stuck", "the gyroscope has repeated a value while the unit moved"),
             _SHAKING_MPS2,
         )
-        self._last_row: tuple[float, ...] | None = None
+        self._last_row: Floats = np.full(6, np.nan)
 
     def push(self, imu: ImuBatch) -> list[str]:
         """Return new faults in this batch; mostly none."""
-        faults: list[str] = []
-        rows = np.hstack((imu.accel_mps2, imu.gyro_radps))
-        finite = np.asarray(np.isfinite(rows).all(axis=1)).tolist()
-        for t_ns, row, usable in zip(imu.t_ns.tolist(), rows.tolist(), finite, strict=True):
-            faults += self._time_fault(t_ns)
-            faults += self._unusable.step(t_ns, holds=not usable)
-            values = tuple(row)
-            faults += self._stuck.step(t_ns, holds=usable and values == self._last_row)
-            accel, gyro = values[:3], values[3:]
-            faults += self._accel_hangs.step(t_ns, accel, gyro)
-            faults += self._gyro_hangs.step(t_ns, gyro, accel)
-            self._last_row = values
-            self._last_t_ns = t_ns
-        return faults
-
-    def _time_fault(self, t_ns: int) -> list[str]:
-        if self._last_t_ns is None:
+        if not len(imu):
             return []
-        step_ns = t_ns - self._last_t_ns
-        if step_ns > _LASTING_NS:
-            return [
-                coded(
-                    "samples-missing",
-                    "no inertial sample for {missing_s:.1f} s",
-                    missing_s=step_ns / NS_PER_S,
-                )
-            ]
-        if step_ns < -_LASTING_NS:
-            return [
-                coded(
-                    "samples-clock-back",
-                    "the samples' clock went back by {back_s:.1f} s",
-                    back_s=-step_ns / NS_PER_S,
-                )
-            ]
-        return []
+        t_ns = imu.t_ns
+        rows = np.hstack((imu.accel_mps2, imu.gyro_radps))
+        first_ns = t_ns[0] if self._last_t_ns is None else self._last_t_ns
+        steps_ns = np.diff(t_ns, prepend=first_ns)
+        repeats = rows == np.vstack((self._last_row, rows[:-1]))
+        usable = np.isfinite(rows).all(axis=1)
+        accel, gyro = rows[:, :3], rows[:, 3:]
+        faults = [
+            *_time_faults(steps_ns),
+            *self._unusable.push(t_ns, ~usable),
+            *self._stuck.push(t_ns, usable & repeats.all(axis=1)),
+            *self._accel_hangs.push(steps_ns, accel, gyro, repeats[:, :3]),
+            *self._gyro_hangs.push(steps_ns, gyro, accel, repeats[:, 3:]),
+        ]
+        self._last_t_ns, self._last_row = int(t_ns[-1]), rows[-1]
+        return [text for _, text in sorted(faults, key=lambda fault: fault[0])]
+
+
+def _time_faults(steps_ns: Times) -> Iterator[Fault]:
+    for row in np.flatnonzero(np.abs(steps_ns) > _LASTING_NS):
+        step_ns = int(steps_ns[row])
+        if step_ns > 0:
+            text = coded(
+                "samples-missing",
+                "no inertial sample for {missing_s:.1f} s",
+                missing_s=step_ns / NS_PER_S,
+            )
+        else:
+            text = coded(
+                "samples-clock-back",
+                "the samples' clock went back by {back_s:.1f} s",
+                back_s=-step_ns / NS_PER_S,
+            )
+        yield int(row), text
 
 
 class _Run:
@@ -83,19 +91,25 @@ class _Run:
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._since_ns: int | None = None
+        self._since_ns: int | None = None  # of the run that lasts
         self._reported = False
 
-    def step(self, t_ns: int, *, holds: bool) -> list[str]:
-        if not holds:
+    def push(self, t_ns: Times, holds: Flags) -> Iterator[Fault]:
+        if not holds.any():
             self._since_ns, self._reported = None, False
-            return []
-        if self._since_ns is None:
-            self._since_ns = t_ns
-        if self._reported or t_ns - self._since_ns < _LASTING_NS:
-            return []
-        self._reported = True
-        return [self._text]
+            return
+        begins = _last_rows(~holds) + 1  # by row: the first row of the run it is in, if it is
+        since_ns = t_ns[np.minimum(begins, len(t_ns) - 1)]
+        if self._since_ns is not None:
+            since_ns = np.where(begins == 0, self._since_ns, since_ns)
+        lasts = holds & (t_ns - since_ns >= _LASTING_NS)
+        reported = 0 if self._reported else -1  # first row of the run that was reported last
+        for row in np.flatnonzero(lasts):
+            if begins[row] != reported:
+                reported = begins[row]
+                yield int(row), self._text
+        self._since_ns = int(since_ns[-1]) if holds[-1] else None
+        self._reported = bool(holds[-1]) and reported == begins[-1]
 
 
 class _Hang:
@@ -110,39 +124,62 @@ class _Hang:
         self._text = text
         self._motion = motion
         self._axes = [_Axis(), _Axis(), _Axis()]
-        self._last_t_ns = 0
         self._reported = False
 
-    def step(self, t_ns: int, own: tuple[float, ...], other: tuple[float, ...]) -> list[str]:
-        step_ns = min(max(t_ns - self._last_t_ns, 0), _LONGEST_STEP_NS)
-        self._last_t_ns = t_ns
-        for axis, value in zip(self._axes, own, strict=True):
-            if value != axis.value or not axis.has_varied:
-                axis.begin(value, other)
-                continue
-            axis.lasts_ns += step_ns
-            if math.dist(other, axis.other_before) > self._motion:
-                axis.moved_ns += step_ns
-        hangs = any(axis.hangs for axis in self._axes)
-        faults = [self._text] if hangs and not self._reported else []
-        self._reported = hangs
-        return faults
+    def push(self, steps_ns: Times, own: Floats, other: Floats, repeats: Flags) -> Iterator[Fault]:
+        """``own``, ``other``: of the two sensors, n x 3; ``repeats``: where ``own`` has the value
+        of the sample before, n x 3.
+        """
+        if repeats.any():
+            steps_ns = np.clip(steps_ns, 0, _LONGEST_STEP_NS)
+        hangs = np.zeros(len(own), bool)
+        for number, axis in enumerate(self._axes):
+            hangs |= axis.push(steps_ns, own[:, number], other, repeats[:, number], self._motion)
+        for row in np.flatnonzero(hangs & ~np.append(self._reported, hangs[:-1])):
+            yield int(row), self._text
+        self._reported = bool(hangs[-1])
 
 
 class _Axis:
-    """Axis that has shown the same value since ``began``."""
+    """Axis of a sensor, and how long it has shown its last value."""
 
-    value = math.nan
-    other_before: tuple[float, ...] = ()
-    has_varied = False
-    lasts_ns = 0
-    moved_ns = 0  # of these, how long the other sensor was far from where it began
+    def __init__(self) -> None:
+        self._has_varied = False
+        self._other_before: Floats = np.full(3, np.nan)  # where the value began
+        self._lasts_ns = 0
+        self._moved_ns = 0  # of these, how long the other sensor was far from where it began
 
-    def begin(self, value: float, other: tuple[float, ...]) -> None:
-        self.value, self.other_before = value, other
-        self.has_varied = self.has_varied or abs(value) > 0.0  # and not NaN
-        self.lasts_ns = self.moved_ns = 0
+    def push(
+        self, steps_ns: Times, own: Floats, other: Floats, repeats: Flags, motion: float
+    ) -> Flags:
+        """Return the samples at which it hangs."""
+        if not self._has_varied:
+            varies = np.abs(own) > 0.0  # and is not NaN
+            repeats = repeats & np.append(False, np.logical_or.accumulate(varies)[:-1])
+            self._has_varied = bool(varies.any())
+        if not repeats.any():
+            self._other_before, self._lasts_ns, self._moved_ns = other[-1], 0, 0
+            return repeats
+        begins = _last_rows(~repeats)
+        before = np.where(begins[:, None] < 0, self._other_before, other[begins])
+        with np.errstate(invalid="ignore", over="ignore"):  # of samples that are not usable
+            change = other - before
+            moves = np.hypot(np.hypot(change[:, 0], change[:, 1]), change[:, 2]) > motion
+        lasts_ns = _sums_since(begins, steps_ns, self._lasts_ns)
+        moved_ns = _sums_since(begins, np.where(moves, steps_ns, 0), self._moved_ns)
+        self._other_before = before[-1]
+        self._lasts_ns, self._moved_ns = int(lasts_ns[-1]), int(moved_ns[-1])
+        return (lasts_ns >= _LASTING_NS) & (moved_ns >= _MOVED_NS)
 
-    @property
-    def hangs(self) -> bool:
-        return self.lasts_ns >= _LASTING_NS and self.moved_ns >= _MOVED_NS
+
+def _last_rows(flags: Flags) -> NDArray[np.int64]:
+    """By row: the last row up to it that is flagged; -1 before the first."""
+    return np.maximum.accumulate(np.where(flags, np.arange(len(flags)), -1))
+
+
+def _sums_since(begins: NDArray[np.int64], steps_ns: Times, before_ns: int) -> Times:
+    """By row: the sum of the steps behind row ``begins``; ``before_ns`` more where that is before
+    the batch.
+    """
+    sums_ns = np.cumsum(steps_ns)
+    return sums_ns - np.where(begins < 0, -before_ns, sums_ns[begins])

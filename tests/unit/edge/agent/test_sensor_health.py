@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from edge.agent.sensor_health import SensorHealth
 from edge.samples import ImuBatch
 from shared.clock import NS_PER_S
+from tests.rig.stepped_sensor_health import SteppedSensorHealth
 
 RATE_HZ = 100
 
@@ -109,10 +112,55 @@ def test_an_axis_in_which_nothing_was_made_to_move_is_well() -> None:
     assert reported(SensorHealth(), imu_of(rows)) == []
 
 
+def test_whole_batches_show_the_same_faults_as_sample_by_sample() -> None:
+    seen = set[str]()
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        imu = spoilt_at_random(rng)
+        health, stepped = SensorHealth(), SteppedSensorHealth()
+        begin = 0
+        while begin < len(imu):
+            end = begin + int(rng.choice([1, 4, 7, 100, 400]))
+            part = imu.part(slice(begin, end))
+            faults = stepped.push(part)
+            assert health.push(part) == faults, (seed, begin)
+            begin = end
+            seen |= {re.sub(r"[0-9.]+ s", "", fault) for fault in faults}
+    assert len(seen) == 6
+
+
+def spoilt_at_random(rng: np.random.Generator) -> ImuBatch:
+    """Half a minute with lasting faults of every kind, one upon the other."""
+    rows = moving_for(30.0, rng)
+    t_ns = np.arange(len(rows)) * (NS_PER_S // RATE_HZ)
+    if rng.random() < 0.3:
+        rows[: rng.integers(1, 1000), rng.integers(6)] = 0.0  # an axis that starts later
+    for _ in range(rng.integers(1, 25)):
+        first = int(rng.integers(len(rows)))
+        until = first + int(rng.choice([1, 20, 99, 100, 101, 102, 250, 700]))
+        axes = rng.choice([slice(0, 6), slice(0, 3), slice(3, 6), slice(1, 2), slice(5, 6)])
+        match rng.integers(5):
+            case 0:
+                rows[first:until, axes] = rng.choice([0.0, 1.0, 1e300])
+            case 1:
+                rows[first:until, axes] = rng.choice([np.nan, np.inf, -np.inf])
+            case 2:
+                rows[first:until] *= 0.01  # at rest
+            case 3:
+                t_ns[first:] += round(rng.choice([0.05, 0.2, 0.99, 1.5, 3.0]) * NS_PER_S)
+            case 4:
+                t_ns[first:] -= round(rng.choice([0.05, 0.99, 1.5]) * NS_PER_S)
+    return ImuBatch(t_ns, rows[:, :3], rows[:, 3:])
+
+
+def moving_for(seconds: float, rng: np.random.Generator) -> np.ndarray:
+    spread = np.array([5.0, 5.0, 5.0, 2.0, 2.0, 2.0])
+    return spread * rng.normal(size=(round(seconds * RATE_HZ), 6))
+
+
 def moving() -> np.ndarray:
     """Accelerations and rates of 5 s."""
-    spread = np.array([5.0, 5.0, 5.0, 2.0, 2.0, 2.0])
-    return spread * np.random.default_rng(3).normal(size=(5 * RATE_HZ, 6))
+    return moving_for(5.0, np.random.default_rng(3))
 
 
 def imu_of(rows: np.ndarray) -> ImuBatch:
