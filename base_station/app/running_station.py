@@ -48,6 +48,7 @@ from base_station.standby.mode import HaMode, Paired, Parts, Standalone
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.unfinished_erasures import UnfinishedErasures
+from base_station.storage.segment_packer import SegmentPacker
 from base_station.unit_sync.clock_server import ClockServer
 from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.views.station import StationFacts
@@ -232,7 +233,9 @@ class RunningStation:
         closing.callback(self._ha_mode.feed.close)
 
     def _start_work_on_log(self) -> None:
-        """Start the readers of the log: post-processing, catch-up of the database, the archive."""
+        """Start the work on the log: post-processing, catch-up of the database, the archive, and
+        packing.
+        """
         disk, closing = self._disk, self._closing
         records = disk.records
         closing.enter_context(
@@ -242,6 +245,7 @@ class RunningStation:
         closing.enter_context(CatchUp(disk.folder, self._replays, disk.projection, prepare))
         if self._archive is not None:
             closing.enter_context(self._archive)
+        closing.enter_context(SegmentPacker(disk.recorder))
 
     def _live_parts(self) -> LiveParts:
         return LiveParts(

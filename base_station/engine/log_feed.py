@@ -12,7 +12,14 @@ from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 from typing import Protocol
 
-from shared.mcap_log import LogRecord, log_id_of, read_log, segment_paths
+from shared.mcap_log import (
+    LogRecord,
+    SegmentIdentity,
+    identity_of,
+    log_id_of,
+    read_log,
+    segment_paths,
+)
 
 
 class RecordSource(Protocol):
@@ -116,6 +123,8 @@ class FolderFeed(LogFeed):
         now = self._files()
         return lambda: not now <= self._files()
 
-    def _files(self) -> set[tuple[str, int]]:
-        """Segments by name and file identity: a segment that is written again is another file."""
-        return {(path.name, path.stat().st_ino) for path in segment_paths(self._folder)}
+    def _files(self) -> set[tuple[str, SegmentIdentity | None]]:
+        """Segments by name and identity: a segment whose records were changed has another identity,
+        one that was packed has the same.
+        """
+        return {(path.name, identity_of(path)) for path in segment_paths(self._folder)}

@@ -55,7 +55,7 @@ class SensorHealth:
         first_ns = t_ns[0] if self._last_t_ns is None else self._last_t_ns
         steps_ns = np.diff(t_ns, prepend=first_ns)
         repeats = rows == np.vstack((self._last_row, rows[:-1]))
-        usable = np.isfinite(rows).all(axis=1)
+        usable = np.asarray(np.isfinite(rows).all(axis=1))
         accel, gyro = rows[:, :3], rows[:, 3:]
         faults = [
             *_time_faults(steps_ns),

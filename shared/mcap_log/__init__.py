@@ -17,6 +17,7 @@ from shared.mcap_log.folder import (
 from shared.mcap_log.foreign_files import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
 from shared.mcap_log.identity import SegmentIdentity, identity_of
 from shared.mcap_log.log_membership import log_id_of, segments_of_one_log
+from shared.mcap_log.packing import can_be_packed, pack_segment
 from shared.mcap_log.ranged_file import FetchRange, RangedSegmentFile
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
@@ -70,6 +71,7 @@ __all__ = [
     "SegmentWriter",
     "audio_topic",
     "byte_ranges_of",
+    "can_be_packed",
     "channel_of_audio",
     "descriptor_set",
     "enclosures_of",
@@ -83,6 +85,7 @@ __all__ = [
     "log_topic",
     "missing_segments",
     "own_segments",
+    "pack_segment",
     "read_attached",
     "read_log",
     "recover_log",

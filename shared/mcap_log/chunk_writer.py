@@ -81,6 +81,21 @@ def pack_chunk(
     return PackedChunk(record, start_ns, end_ns, size, bytes(index), offsets, counts)
 
 
+def compressed_chunk(
+    data: bytes,
+    start_ns: int,
+    end_ns: int,
+    entries: Mapping[int, Sequence[int]],
+    compressor: zstandard.ZstdCompressor,
+) -> PackedChunk:
+    """A chunk of these records; ``entries`` as for ``pack_chunk``."""
+    packed = compressor.compress(data)
+    head = CHUNK.pack(start_ns, end_ns, len(data), zlib.crc32(data), len(COMPRESSION))
+    body = b"".join((head, COMPRESSION, _SIZE.pack(len(packed)), packed))
+    record = RECORD.pack(Opcode.CHUNK, len(body)) + body
+    return pack_chunk(record, start_ns, end_ns, len(data), entries)
+
+
 class ChunkWriter:
     """Schemas, topics and messages of one chunk after the other."""
 
@@ -119,18 +134,8 @@ class ChunkWriter:
         """Chunk of the records since the last one; None where there was no message."""
         if not self._entries:
             return None
-        data = b"".join(self._parts)
-        packed = self._compressor.compress(data)
-        head = CHUNK.pack(
-            self._start_ns, self._end_ns, len(data), zlib.crc32(data), len(COMPRESSION)
-        )
-        body = b"".join((head, COMPRESSION, _SIZE.pack(len(packed)), packed))
-        made = pack_chunk(
-            RECORD.pack(Opcode.CHUNK, len(body)) + body,
-            self._start_ns,
-            self._end_ns,
-            len(data),
-            self._entries,
+        made = compressed_chunk(
+            b"".join(self._parts), self._start_ns, self._end_ns, self._entries, self._compressor
         )
         self._parts.clear()
         self._entries.clear()
@@ -153,7 +158,7 @@ class McapFile:
         self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
         self._metadata_indexes: list[bytes] = []
         self._attachment_indexes: list[bytes] = []
-        if identity.log_id:  # none of a segment of an earlier version
+        if identity.log_id or identity.revision:  # none of a segment of an earlier version
             self.add_metadata(identity.metadata())
 
     def add(self, chunk: PackedChunk) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from shared.mcap_log.segment_file import SegmentFile
 
 PROFILE = "muster"
 METADATA_NAME = "muster.log"
-_LOG_ID, _FOLLOWS, _CRC32 = "log_id", "follows", "crc32"
+_LOG_ID, _FOLLOWS, _REVISION, _CRC32 = "log_id", "follows", "revision", "crc32"
 _LENGTH = struct.Struct("<I")
 _KEPT = 65_536  # heads; they are small
 
@@ -32,12 +32,19 @@ class SegmentIdentity:
     log_id: str = ""
     follows: str = ""  # the name of the segment before it; empty: it is the first
     profile: str = PROFILE  # of the program that wrote it
+    revision: int = 0  # number of times that its records were changed
 
     def metadata(self) -> Metadata:
         """With a checksum, for the container has none: a bit that flips makes no other log."""
-        checked = zlib.crc32(f"{self.log_id} {self.follows}".encode())
-        contents = {_LOG_ID: self.log_id, _FOLLOWS: self.follows, _CRC32: f"{checked:08x}"}
-        return Metadata(METADATA_NAME, contents)
+        contents = {_LOG_ID: self.log_id, _FOLLOWS: self.follows}
+        if self.revision:
+            contents[_REVISION] = str(self.revision)
+        checked = zlib.crc32(" ".join(contents.values()).encode())
+        return Metadata(METADATA_NAME, {**contents, _CRC32: f"{checked:08x}"})
+
+    def revised(self) -> SegmentIdentity:
+        """Identity of the segment with other records."""
+        return replace(self, revision=self.revision + 1)
 
 
 def identity_of(path: Path) -> SegmentIdentity | None:
@@ -74,7 +81,11 @@ def _identity(file: SegmentFile) -> SegmentIdentity:
     if opcode != Opcode.METADATA:
         raise ValueError("no such record stands there")
     name, contents = _metadata(file.read(offset + RECORD.size, length))
-    identity = SegmentIdentity(contents.get(_LOG_ID, ""), contents.get(_FOLLOWS, ""))
+    identity = SegmentIdentity(
+        contents.get(_LOG_ID, ""),
+        contents.get(_FOLLOWS, ""),
+        revision=int(contents.get(_REVISION, "0")),
+    )
     if (name, contents) != (METADATA_NAME, identity.metadata().metadata):
         raise ValueError("it is not as it was written")
     return identity

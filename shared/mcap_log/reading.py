@@ -9,12 +9,14 @@ from operator import itemgetter
 from pathlib import Path
 
 from shared.mcap_log.container import (
+    CHUNK,
     INDEX_ENTRY,
     INDEX_HEAD,
     INDEX_OFFSET,
     MESSAGE,
     MESSAGE_BYTES,
     NONSENSE,
+    RECORD,
     message_offsets,
     unpacked,
 )
@@ -143,6 +145,13 @@ class SegmentReader:
             self._contents.chunks_learned = max(self._contents.chunks_learned, index + 1)
             if not outside:
                 yield from self._records_at(data, offsets, wanted)
+
+    def chunk_sizes(self) -> list[int]:
+        """Bytes of the records in each chunk, before compression; ValueError where a head of them
+        cannot be read.
+        """
+        offsets = [chunk.offset + RECORD.size for chunk in self._contents.chunks]
+        return [CHUNK.unpack(self._file.read(offset, CHUNK.size))[2] for offset in offsets]
 
     def is_whole(self) -> bool:
         """True if every chunk is as it was written."""

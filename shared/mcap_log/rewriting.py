@@ -52,7 +52,7 @@ def write_segment_like(model: Path, path: Path, records: Iterable[LogRecord]) ->
     """Make a complete segment of the same log as ``model``; False, and no file, where there are no
     records.  Raises OSError.
     """
-    segment = Segment(path, SegmentPolicy().chunk_bytes, identity_in_log(model))
+    segment = Segment(path, SegmentPolicy().chunk_bytes, identity_in_log(model).revised())
     try:
         for t_ns, key, payload in records:
             segment.add(t_ns, key, payload)
@@ -81,7 +81,7 @@ def _rewritten(
     on_damage: Callable[[str], None],
 ) -> int:
     changed = 0
-    segment = Segment(making, SegmentPolicy().chunk_bytes, identity_in_log(path))
+    segment = Segment(making, SegmentPolicy().chunk_bytes, identity_in_log(path).revised())
     try:
         with SegmentReader(path) as reader:
             for record in reader.records(derived=True):

@@ -7,7 +7,15 @@ from pathlib import Path
 from base_station.engine.log_feed import FolderFeed
 from shared.channels import EVENT, POSITION
 from shared.clock import NS_PER_S
-from shared.mcap_log import SegmentWriter
+from shared.mcap_log import (
+    Segment,
+    SegmentIdentity,
+    SegmentWriter,
+    pack_segment,
+    rewrite_segment,
+    segment_path,
+    segment_paths,
+)
 
 KEY = POSITION.key("anna")
 ALERT = EVENT.key("anna")
@@ -24,15 +32,34 @@ def test_log_feeds_its_records_and_requests_the_flush_first(tmp_path: Path) -> N
 
 
 def test_log_feed_detects_rewriting_and_not_growth(tmp_path: Path) -> None:
-    first, second = (tmp_path / f"{number:06d}-20261122T070000Z.mcap" for number in (1, 2))
-    first.write_bytes(b"with a name in it")
+    writer = SegmentWriter(tmp_path)
+    writer.write(0, KEY, b"with a name in it", urgent=True)
     changed = FolderFeed(tmp_path).watch()
-    with first.open("ab") as growing:
-        growing.write(b" and more")
-    second.write_bytes(b"the next one")
+    writer.write(NS_PER_S, KEY, b"and more", urgent=True)
+    writer.end_segment()
+    writer.write(2 * NS_PER_S, KEY, b"the next one", urgent=True)
     assert not changed()
-    anew = tmp_path / "anew"
-    anew.write_bytes(b"without")
-    anew.replace(first)
+    first, _ = segment_paths(tmp_path)
+    assert pack_segment(first)
+    assert not changed()
+    rewrite_segment(first, lambda record: [(*record[:2], b"without")])
     assert changed()
-    assert not FolderFeed(tmp_path).watch()()
+    changed = FolderFeed(tmp_path).watch()
+    assert not changed()
+    assert pack_segment(first)
+    assert not changed()
+    rewrite_segment(first, lambda _: [])
+    assert changed()
+    writer.close()
+
+
+def test_log_feed_detects_rewriting_of_a_log_of_an_earlier_version(tmp_path: Path) -> None:
+    segment = Segment(segment_path(tmp_path, 1, 0), 1000, SegmentIdentity())
+    segment.add(0, KEY, b"with a name in it")
+    segment.finish()
+    segment.file.sync()
+    segment.file.close()
+    changed = FolderFeed(tmp_path).watch()
+    assert not changed()
+    rewrite_segment(segment.file.path, lambda record: [(*record[:2], b"without")])
+    assert changed()
