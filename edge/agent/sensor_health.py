@@ -23,6 +23,7 @@ _MOVED_NS = NS_PER_S // 5  # a swing or two
 _LONGEST_STEP_NS = NS_PER_S // 10  # motion in a longer gap is unknown
 
 Times = NDArray[np.int64]
+Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Fault = tuple[int, str]  # row of the batch at which it is found, text
 
@@ -123,63 +124,67 @@ class _Hang:
         """``motion``: change of the other sensor while the unit moves, in its unit."""
         self._text = text
         self._motion = motion
-        self._axes = [_Axis(), _Axis(), _Axis()]
         self._reported = False
+        # By axis, of the value that it has shown last:
+        self._has_varied = np.zeros(3, bool)
+        self._other_before = np.full((3, 3), np.nan)  # of the other sensor, where the value began
+        self._lasts_ns = np.zeros(3, np.int64)
+        self._moved_ns = np.zeros(3, np.int64)  # of these, how long the other was far from there
 
     def push(self, steps_ns: Times, own: Floats, other: Floats, repeats: Flags) -> Iterator[Fault]:
         """``own``, ``other``: of the two sensors, n x 3; ``repeats``: where ``own`` has the value
         of the sample before, n x 3.
         """
-        if repeats.any():
-            steps_ns = np.clip(steps_ns, 0, _LONGEST_STEP_NS)
-        hangs = np.zeros(len(own), bool)
-        for number, axis in enumerate(self._axes):
-            hangs |= axis.push(steps_ns, own[:, number], other, repeats[:, number], self._motion)
+        if not self._has_varied.all():
+            varies = np.abs(own) > 0.0  # and is not NaN
+            varied_before = np.logical_or.accumulate(np.vstack((self._has_varied, varies)))
+            repeats = repeats & varied_before[:-1]
+            self._has_varied = varied_before[-1]
+        if not repeats.any():
+            self._other_before = np.tile(other[-1], (3, 1))
+            self._lasts_ns, self._moved_ns = np.zeros((2, 3), np.int64)
+            self._reported = False
+            return
+        begins = _last_rows(~repeats)
+        steps_ns = np.clip(steps_ns, 0, _LONGEST_STEP_NS)
+        lasting_ns, moving_ns = np.zeros((2, *own.shape), np.int64)
+        rows, axes = np.nonzero(repeats)
+        lasting_ns[rows, axes] = steps_ns[rows]
+        moves = _is_farther(
+            other[rows], self._before(begins[rows, axes], axes, other), self._motion
+        )
+        moving_ns[rows, axes] = np.where(moves, steps_ns[rows], 0)
+        lasts_ns = _sums_since(begins, lasting_ns, self._lasts_ns)
+        moved_ns = _sums_since(begins, moving_ns, self._moved_ns)
+        self._other_before = self._before(begins[-1], np.arange(3), other)
+        self._lasts_ns, self._moved_ns = lasts_ns[-1], moved_ns[-1]
+        hangs = ((lasts_ns >= _LASTING_NS) & (moved_ns >= _MOVED_NS)).any(axis=1)
         for row in np.flatnonzero(hangs & ~np.append(self._reported, hangs[:-1])):
             yield int(row), self._text
         self._reported = bool(hangs[-1])
 
-
-class _Axis:
-    """Axis of a sensor, and how long it has shown its last value."""
-
-    def __init__(self) -> None:
-        self._has_varied = False
-        self._other_before: Floats = np.full(3, np.nan)  # where the value began
-        self._lasts_ns = 0
-        self._moved_ns = 0  # of these, how long the other sensor was far from where it began
-
-    def push(
-        self, steps_ns: Times, own: Floats, other: Floats, repeats: Flags, motion: float
-    ) -> Flags:
-        """Return the samples at which it hangs."""
-        if not self._has_varied:
-            varies = np.abs(own) > 0.0  # and is not NaN
-            repeats = repeats & np.append(False, np.logical_or.accumulate(varies)[:-1])
-            self._has_varied = bool(varies.any())
-        if not repeats.any():
-            self._other_before, self._lasts_ns, self._moved_ns = other[-1], 0, 0
-            return repeats
-        begins = _last_rows(~repeats)
-        before = np.where(begins[:, None] < 0, self._other_before, other[begins])
-        with np.errstate(invalid="ignore", over="ignore"):  # of samples that are not usable
-            change = other - before
-            moves = np.hypot(np.hypot(change[:, 0], change[:, 1]), change[:, 2]) > motion
-        lasts_ns = _sums_since(begins, steps_ns, self._lasts_ns)
-        moved_ns = _sums_since(begins, np.where(moves, steps_ns, 0), self._moved_ns)
-        self._other_before = before[-1]
-        self._lasts_ns, self._moved_ns = int(lasts_ns[-1]), int(moved_ns[-1])
-        return (lasts_ns >= _LASTING_NS) & (moved_ns >= _MOVED_NS)
+    def _before(self, begins: Rows, axes: Rows, other: Floats) -> Floats:
+        """Values of the other sensor where those of these axes began."""
+        return np.where(begins[:, None] < 0, self._other_before[axes], other[begins])
 
 
-def _last_rows(flags: Flags) -> NDArray[np.int64]:
-    """By row: the last row up to it that is flagged; -1 before the first."""
-    return np.maximum.accumulate(np.where(flags, np.arange(len(flags)), -1))
+def _is_farther(here: Floats, there: Floats, distance: float) -> Flags:
+    """``here``, ``there``: n x 3."""
+    with np.errstate(invalid="ignore", over="ignore"):  # of samples that are not usable
+        x, y, z = (here - there).T
+        return np.asarray(np.hypot(np.hypot(x, y), z) > distance)
 
 
-def _sums_since(begins: NDArray[np.int64], steps_ns: Times, before_ns: int) -> Times:
+def _last_rows(flags: Flags) -> Rows:
+    """By row: the last row up to it that is flagged; -1 before the first.  Each column apart."""
+    rows = np.arange(len(flags)).reshape(-1, *(1,) * (flags.ndim - 1))
+    return np.maximum.accumulate(np.where(flags, rows, -1))
+
+
+def _sums_since(begins: Rows, steps_ns: Times, before_ns: Times) -> Times:
     """By row: the sum of the steps behind row ``begins``; ``before_ns`` more where that is before
-    the batch.
+    the batch.  Each column apart.
     """
-    sums_ns = np.cumsum(steps_ns)
-    return sums_ns - np.where(begins < 0, -before_ns, sums_ns[begins])
+    sums_ns = np.cumsum(steps_ns, axis=0)
+    at_begin_ns = np.take_along_axis(sums_ns, np.maximum(begins, 0), axis=0)
+    return sums_ns - np.where(begins < 0, -before_ns, at_begin_ns)
