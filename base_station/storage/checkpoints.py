@@ -24,10 +24,11 @@ from shared.own_files import make_folder, write_own
 SUFFIX = ".checkpoint"
 _PART = "saving.part"
 _NOT_OURS = frozenset({"node_modules", "__pycache__"})  # in a checkout; npm may be replacing them
-KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
+KEPT_CLOSE = 3  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
 KEPT_BYTES = 2_000_000_000
-SPARSE_NS = 60 * NS_PER_S  # that a seek in a replay steps at most
+SPARSE_NS = 180 * NS_PER_S  # that a seek steps at most, where a replay decides again
+_LEVEL = 3  # of Zstandard
 
 
 class SavedState(msgspec.Struct, frozen=True):
@@ -62,7 +63,7 @@ class Checkpoints:
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
         """Raises OSError where the disk does not take it; then nothing is left of it."""
         # An hour of a hundred units is 27 MB as it is.
-        packed = zstandard.ZstdCompressor(level=1).compress(pipeline)
+        packed = zstandard.ZstdCompressor(_LEVEL).compress(pipeline)
         file = _File(t_ns, events_at_t, zlib.crc32(packed), packed, self._program)
         content = msgspec.msgpack.encode(file)
         path = self._folder / f"{t_ns:020d}{SUFFIX}"

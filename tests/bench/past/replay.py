@@ -36,7 +36,7 @@ from base_station.views.wire import Delta, Snapshot
 from shared.bench_figures import FiguresFile, write_figures
 from shared.channels import OPERATOR
 from shared.clock import SystemClock
-from shared.mcap_log import is_console, read_log, segment_paths
+from shared.mcap_log import can_be_packed, is_console, pack_segment, read_log, segment_paths
 from shared.messages import STATION_ID
 from tests.bench.past.command import walk_incident
 from tests.bench.past.live_positions import PositionAges, live_positions
@@ -89,7 +89,8 @@ class ReplayFigures:
     units: int
     minutes: float
     messages: int
-    log_mb: float
+    written_mb: float  # of the log, as it comes to the disk
+    log_mb: float  # packed, as a station keeps it
     console_share: float  # of the bytes before compression
     checkpoints_mb: float
     first_process_s: float  # until the first picture; the program is loaded first
@@ -123,12 +124,15 @@ def bench_replay(
     with TemporaryDirectory(prefix="muster-bench-") as name, Progress(transient=True) as progress:
         folder = DataFolder(Path(name))
         messages = walk_incident(folder, units, minutes, progress)
+        written_mb = _log_mb(folder)
+        for segment in filter(can_be_packed, segment_paths(folder.log)):  # as a station does
+            pack_segment(segment)
         progress.add_task("replaying", total=None)
         with Store(folder.database) as store:
             incident = Records(store, SystemClock()).require_incident("i1")
         assert incident.closed_ns is not None
         window = ReplayWindow("i1", incident.opened_ns, incident.closed_ns)
-        figures = _figures(folder, window, units, minutes, messages, live_units, live_s)
+        figures = _figures(folder, window, units, minutes, messages, written_mb, live_units, live_s)
     Console().print(_table(figures))
     write_figures(json_file, figures)
 
@@ -139,6 +143,7 @@ def _figures(
     units: int,
     minutes: float,
     messages: int,
+    written_mb: float,
     live_units: int,
     live_s: float,
 ) -> ReplayFigures:
@@ -174,7 +179,8 @@ def _figures(
         units=units,
         minutes=minutes,
         messages=messages,
-        log_mb=sum(path.stat().st_size for path in segment_paths(folder.log)) / 1e6,
+        written_mb=written_mb,
+        log_mb=_log_mb(folder),
         console_share=_console_share(folder),
         checkpoints_mb=sum(one.stat().st_size for one in folder.checkpoints.iterdir()) / 1e6,
         first_process_s=first_process_s,
@@ -335,6 +341,10 @@ def _peak_mb(worker: psutil.Process) -> float:
     return int(peak_kb) / 1e3
 
 
+def _log_mb(folder: DataFolder) -> float:
+    return sum(path.stat().st_size for path in segment_paths(folder.log)) / 1e6
+
+
 def _console_share(folder: DataFolder) -> float:
     total = console = 0
     for _, key, payload in read_log(folder.log, derived=True):
@@ -346,7 +356,8 @@ def _console_share(folder: DataFolder) -> float:
 def _table(figures: ReplayFigures) -> Table:
     table = Table(
         title=f"Replaying {figures.minutes:g} min of {figures.units} units: "
-        f"{figures.messages:,} messages, log {figures.log_mb:.0f} MB "
+        f"{figures.messages:,} messages, "
+        f"log {figures.log_mb:.0f} MB, {figures.written_mb:.0f} MB as written "
         f"(before compression {figures.console_share:.0%} of it what consoles were shown), "
         f"checkpoints {figures.checkpoints_mb:.0f} MB"
     )
