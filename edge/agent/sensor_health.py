@@ -158,7 +158,7 @@ class _Hang:
         moved_ns = _sums_since(begins, moving_ns, self._moved_ns)
         self._other_before = self._before(begins[-1], np.arange(3), other)
         self._lasts_ns, self._moved_ns = lasts_ns[-1], moved_ns[-1]
-        hangs = ((lasts_ns >= _LASTING_NS) & (moved_ns >= _MOVED_NS)).any(axis=1)
+        hangs = np.any((lasts_ns >= _LASTING_NS) & (moved_ns >= _MOVED_NS), axis=1)
         for row in np.flatnonzero(hangs & ~np.append(self._reported, hangs[:-1])):
             yield int(row), self._text
         self._reported = bool(hangs[-1])
