@@ -1,7 +1,7 @@
-"""Passwords as argon2 hashes; making and checking one takes long, and 64 MB, on purpose.
+"""Passwords as argon2 hashes.  Making and checking a hash takes long, and 64 MB, on purpose.
 
-All of it is done by two threads of low priority, so that many attempts take little time from other
-requests.  While they compute they hold no lock of the interpreter's.
+Two threads of low priority do all of it, so that many attempts take little time from other
+requests.  While they compute they do not hold the interpreter's lock.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _NICENESS = 5  # of the thread, and of those that argon2 makes for its lanes
 
 
 class Passwords:
-    """Thread-safe."""
+    """Maker and checker of hashes.  Thread-safe."""
 
     def __init__(self, hasher: PasswordHash | None = None) -> None:
         self._hasher = hasher or PasswordHash.recommended()
@@ -31,7 +31,9 @@ class Passwords:
         self._unknown_user_hash = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:
-        """Raises UserError if it is too short, or longer than the limit of a login."""
+        """Return the hash.  Raises UserError if the password is too short, or longer than a login
+        may be.
+        """
         if len(password) < MIN_PASSWORD:
             raise UserError(
                 coded(
@@ -51,12 +53,14 @@ class Passwords:
         return self._worker.submit(self._hasher.hash, password).result()
 
     def is_valid(self, password: str, stored: str | None) -> bool:
-        """``stored``: the hash; None: there is no such user, and the answer takes as long."""
+        """True if the password has this hash.  ``stored`` is None for an unknown user; the answer
+        then takes as long.
+        """
         against = self._unknown_user_hash.result() if stored is None else stored
         verified = self._worker.submit(self._hasher.verify, password, against).result()
         return verified and stored is not None
 
 
 def _lower_priority() -> None:
-    """Lower the priority of this thread: on Linux each has a niceness of its own."""
+    """Lower the priority of this thread: on Linux each thread has its own niceness."""
     os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

@@ -1,4 +1,4 @@
-"""Cache of principals that were let in, for as long as the database does not answer."""
+"""Cache of authenticated principals, for times when the database does not answer."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _MOST = 1000
 
 
 class PrincipalCache:
-    """Thread-safe.  Knows secrets by their SHA-256 only."""
+    """Cache that knows secrets by their SHA-256 only.  Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = Lock()
         self._known: dict[bytes, Principal] = {}  # in the order of look-ups, the newest last
 
     def resolve(self, secret: str, look_up: Callable[[str], Principal | None]) -> Principal | None:
-        """Holder of a secret.  A commander in an emergency must not wait for a disk or a server;
-        only holders who were let in before are known without them.
+        """Return the holder of a secret.  A commander in an emergency must not wait for a disk or a
+        server, so holders who were authenticated before are known without them.
 
         Raises StoreError, as ``look_up``.
         """
@@ -43,6 +43,6 @@ class PrincipalCache:
         return found
 
     def forget_all(self) -> None:
-        """Look up all holders again: a right may have been withdrawn."""
+        """Forget all holders, so that they are looked up again: a right may have been withdrawn."""
         with self._lock:
             self._known.clear()

@@ -16,7 +16,7 @@ _USERNAME = re.compile(rf"(?!\.\.?$)(?=.*\S)[^/\ud800-\udfff{BARRED}]{{1,80}}")
 
 
 def require_username(username: str) -> None:
-    """UserError where it cannot be used to log in, or in an address of the API."""
+    """Raise UserError if the name cannot be used to log in, or in an address of the API."""
     if _USERNAME.fullmatch(username) is None:
         raise UserError(
             coded(
@@ -27,7 +27,7 @@ def require_username(username: str) -> None:
 
 
 class Role(IntEnum):
-    """Each may do what those below it may."""
+    """Role of a user; each may do what those below it may."""
 
     VIEWER = 1
     COMMANDER = 2

@@ -26,9 +26,10 @@ def copy_incidents(
         bool, typer.Option("--radio", help="With the audio of the radio channels.")
     ] = False,
 ) -> None:
-    """Copy all closed incidents that the archive lacks, or of which more is known since.
+    """Copy all closed incidents that the archive lacks, or of which more has become known since.
 
-    Also while the station runs.  Cut short, or with the archive away, the next one goes on.
+    The station may be running.  If the command is interrupted, or the archive cannot be reached,
+    the next run continues.
     """
     from base_station.app.archive_sources import open_copier  # noqa: PLC0415
 
@@ -54,7 +55,7 @@ def copy_incidents(
 
 @archive.command("list")
 def list_incidents(archive: _Archive) -> None:
-    """The incidents that are there, by their times."""
+    """List the incidents in the archive, in time order."""
     from base_station.archive.catalogue import archived_ids, require_entry  # noqa: PLC0415
     from base_station.archive.store import open_store  # noqa: PLC0415
 
@@ -72,7 +73,7 @@ def list_incidents(archive: _Archive) -> None:
 
 @archive.command("verify")
 def verify(archive: _Archive) -> None:
-    """Read all of it, and hold it against its checksums; exit code 1: something is not right."""
+    """Read the whole archive and compare it with its checksums; exit code 1 if anything differs."""
     from base_station.archive.checking import defects_of  # noqa: PLC0415
     from base_station.archive.store import open_store  # noqa: PLC0415
 
@@ -93,7 +94,7 @@ def fetch(
     incident: Annotated[str, typer.Argument(help="Its id.")],
     out: Annotated[Path, typer.Argument(help="File to write: incident.mcap.", callback=writable)],
 ) -> None:
-    """Bring an incident back as one file that stands alone: report, export, assess take it."""
+    """Fetch an incident as one file that stands alone: report, export and assess accept it."""
     from base_station.archive.catalogue import require_entry  # noqa: PLC0415
     from base_station.archive.checking import fetch_log  # noqa: PLC0415
     from base_station.archive.store import open_store  # noqa: PLC0415

@@ -27,7 +27,7 @@ from shared.clock import SystemClock
 
 @contextmanager
 def open_copier(archive: str, data: Path, *, with_radio: bool = False) -> Iterator[ArchiveCopier]:
-    """Copies from a folder, beside a running station or without one."""
+    """Open what makes copies from a folder, beside a running station or without one."""
     folder = DataFolder(data)
     folder.require()
     target = open_store(archive)

@@ -13,7 +13,9 @@ from base_station.storage.db.archived import ArchivedCopies
 def automatic_archive(
     resources: Resources, processes: ReplayProcesses, leads: Callable[[], bool]
 ) -> AutomaticArchive | None:
-    """None where the settings have no archive.  Raises ConfigError where it needs a library."""
+    """Return the archive of the settings; None if they have none.  Raises ConfigError if it needs a
+    library that is missing.
+    """
     config, disk = resources.config.archive, resources.disk
     if config is None:
         return None

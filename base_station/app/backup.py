@@ -43,7 +43,7 @@ class Backup:
     unreadable: list[str] = field(default_factory=list)  # files, or parts of them
 
     def require_whole(self) -> None:
-        """LogError where something is missing in it."""
+        """Raise LogError if anything is missing in the backup."""
         if self.unreadable:
             raise LogError(
                 f"the backup lacks what the disk does not give of {', '.join(self.unreadable)}: "
@@ -95,7 +95,9 @@ def _require_own_target(source: DataFolder, copy: DataFolder) -> None:
 
 
 def _copy_database(source: DataFolder, copy: DataFolder) -> StoreError | None:
-    """Gives the reason why it cannot be copied; the log has positions and alarms all the same."""
+    """Copy the database; return the reason why it cannot be copied, empty if it was.  The log has
+    positions and alarms in any case.
+    """
     try:
         with _part_of(copy.database) as part:
             if not copy_to_file(source.database, part):
@@ -141,7 +143,7 @@ def _copy_files(
 
 
 def _remove_taken_out(copy: DataFolder) -> None:
-    """Removes imports that were taken out of their incident since, or forgotten; those that are
+    """Remove imports that have been removed from their incident since, or erased; those that are
     only missing at the station stay.
     """
     if not (copy.imports.is_dir() and copy.database.exists()):
@@ -164,8 +166,9 @@ def _audio_files(folder: DataFolder) -> Iterator[Path]:
 
 
 def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
-    """Renames parts that were set aside and were renamed when the other station had them.  Under
-    both names it would be handed over once more, and under the old one erasure would not reach it.
+    """Rename parts that were set aside and were renamed when the other station had them.  A part
+    under both names would be handed over once more, and erasure would not reach the one under the
+    old name.
     """
     for handed_over in (source.path / APART).glob(f"*{MERGED_SUFFIX}"):
         now = copy.path / APART / handed_over.name
@@ -184,8 +187,8 @@ def _size_of(path: Path) -> int:
 
 
 def _copy_file(path: Path, copy: Path) -> bool:
-    """True where the disk gives all of it; else zeros stand in the copy, which readers of a log
-    find as damage; of a file that it does not give at all there is none.
+    """Copy a file.  False if the disk does not return all of it: zeros then stand in the copy,
+    which readers of a log find as damage.  Of a file that cannot be read at all there is no copy.
     """
     try:
         file = read_own(path)
@@ -217,7 +220,9 @@ def _files(source: DataFolder) -> Iterator[Path]:
 
 
 def _is_unchanged(path: Path, target: Path) -> bool:
-    """A segment that grows has another size; one that was rewritten, another time."""
+    """True if the copy has the size and time of the segment: one that grows has another size, one
+    that was rewritten another time.
+    """
     try:
         now, then = path.stat(), target.stat()
     except OSError:
@@ -227,8 +232,8 @@ def _is_unchanged(path: Path, target: Path) -> bool:
 
 @contextmanager
 def _part_of(target: Path) -> Iterator[Path]:
-    """Path on which a copy is made.  It gets its name when it is on the disk, until then an older
-    one stands there; after a failure nothing is left of it.
+    """Path on which a copy is made.  The copy gets its name when it is on disk; until then an older
+    copy keeps that name, and after a failure nothing is left of the new one.
     """
     part = target.with_name(target.name + _PART)
     try:

@@ -27,7 +27,7 @@ class CatchUp:
         projection: SqlProjection,
         prepare: Callable[[], object],
     ) -> None:
-        """``prepare``: brings recorded data to the disk."""
+        """``prepare`` flushes recorded data to disk."""
         self._folder = folder
         self._process = ProjectionProcess(processes)
         self._projection, self._prepare = projection, prepare

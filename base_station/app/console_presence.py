@@ -17,23 +17,23 @@ _log = logging.getLogger(__name__)
 
 
 class ConsolePresence(ServiceAnnouncement):
-    """Announcement kept as the machine's addresses are; ``update`` now and then."""
+    """Announcement that follows the machine's addresses; ``update`` is to be called regularly."""
 
     def __init__(self, config: HttpConfig, own: Callable[[], Iterable[str]] = own_hosts) -> None:
-        """``own``: gives the addresses of this machine."""
+        """``own`` returns the addresses of this machine."""
         super().__init__(_log, "the console is not announced on its network")
         self._config = config
         self._own = own
         self._host, self._port = host_and_port(config.listen)
 
     def update(self) -> None:
-        """Announce the present state; a failure is tried again the next time."""
+        """Announce the present state; after a failure the next call tries again."""
         if not self._config.local_name:
             return
         self.keep(self._wanted, lambda: interfaces_of([self._host]))
 
     def problems(self) -> tuple[str, ...]:
-        """Sentences for the console."""
+        """Sentences about problems, for the console."""
         name = f"{self._config.local_name}.local"
         if self.fault:
             text = coded(
@@ -55,7 +55,9 @@ class ConsolePresence(ServiceAnnouncement):
         return ()
 
     def _is_in_certificate(self, name: str) -> bool:
-        """True without a certificate: then a browser asks for none."""
+        """True if the certificate has the name.  True also without a certificate, as a browser then
+        asks for none.
+        """
         certificate = self._config.certificate
         try:
             return certificate is None or is_valid_for_host(certificate.read_bytes(), name)

@@ -1,4 +1,4 @@
-"""``muster base export``: an incident as a file, with or without a running station."""
+"""``muster base export``: write an incident to a file, with or without a running station."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Secrets of a station that others than its user could read: closed to them when it starts, and
-named until it ends, as another user may have read them.
+"""Secrets of a station that other users of the machine could read.  Their files are closed to them
+when the station starts, and named until it ends, as another user may have read them.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class ExposedSecrets:
     def __init__(
         self, folder: DataFolder, console_key: Path | None, database_password: Path | None = None
     ) -> None:
-        """Closes them; ``console_key`` and the file of the ``database_password`` may be some that
-        other programs of their group use, too.
+        """Close the files.  ``console_key`` and the file of the ``database_password`` may be shared
+        with other programs of their group.
         """
         self._problems = tuple(_sentences(folder, console_key, database_password))
 
     def problems(self) -> tuple[str, ...]:
-        """Sentences for the console."""
+        """Sentences about problems, for the console."""
         return self._problems
 
 

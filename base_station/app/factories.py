@@ -37,8 +37,8 @@ Announce = Callable[[str], None]
 def replay_starter(
     archive: Archive, roster: Roster, clock: Clock, recorded_until_ns: Callable[[], int]
 ) -> StartReplay:
-    """In threads of this process.  ``recorded_until_ns``, in station time, is where an incident
-    ends that is open.
+    """Return a function that starts replays in threads of this process.  ``recorded_until_ns``
+    returns the station time up to which an open incident can be replayed.
     """
 
     def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplaySession:
@@ -53,8 +53,8 @@ def replay_process_starter(
     recorded_until_ns: Callable[[], int],
     instead_of_log: Callable[[IncidentRow], ArchivedLog | None],
 ) -> StartReplay:
-    """In processes of their own.  ``instead_of_log`` gives the copy of an incident whose log is not
-    here; its errors go to the caller who opens the replay.
+    """Return a function that starts replays in processes of their own.  ``instead_of_log`` returns
+    the copy of an incident whose log is not here; the caller who opens the replay gets its errors.
     """
 
     def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplayProcess:
@@ -70,7 +70,9 @@ def _window_of(incident: IncidentRow, recorded_until_ns: Callable[[], int]) -> R
 
 
 def announce_first_login(accounts: Accounts, note: Path | None, announce: Announce) -> None:
-    """``note``: None where the disk takes none."""
+    """Announce the first administrator's password.  ``note``: file that has it too; None if the
+    disk did not take it.
+    """
     password = ensure_administrator(accounts, note)
     if password is not None:
         where = "only here: the disk takes nothing" if note is None else f"also in {note}"
@@ -78,7 +80,7 @@ def announce_first_login(accounts: Accounts, note: Path | None, announce: Announ
 
 
 def project_since(store: Database, archive: Archive, since_ns: int) -> None:
-    """Project the log again from a time on; rows that the tables have stay as they are."""
+    """Project the log again from a time on; rows that are in the tables stay as they are."""
 
     def write(projection: Projection) -> None:
         if projection.t_ns >= since_ns - _OVERLAP_NS:
@@ -90,7 +92,9 @@ def project_since(store: Database, archive: Archive, since_ns: int) -> None:
 
 
 def project_whole_log(store: Database, log: Path, on_progress: Callable[[float], None]) -> int:
-    """Cut short, it leaves a database that knows no segment of the log."""
+    """Project the whole log.  If it is interrupted, the database does not know any segment of the
+    log.
+    """
     records = Records(store, SystemClock())
     records.forget_projections()
     segments = _segments(log)

@@ -1,4 +1,4 @@
-"""Administrators that the program makes itself: at a station's first start, and for a replay."""
+"""Administrators that the program creates: at a station's first start, and for a replay."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ USERNAME = "admin"
 
 
 def ensure_administrator(accounts: Accounts, note: Path | None) -> str | None:
-    """The password of a new administrator, also written to ``note``, where the disk takes
-    anything; None where users exist.
+    """Create an administrator if there is no user, and return the password, which is also written
+    to the file ``note`` if the disk takes anything.  None if there are users.
 
-    The note is on the disk before there is such a user: a user can still log in after the station
-    was switched off right after its first start.  A password that has stood in a file and on a
-    screen must be changed first; not where it ends with this run of the station.
-    Raises StoreError where the disk does not take it.
+    The note is on disk before the user is created, so that a user can log in after the station was
+    switched off right after its first start.  A password that was in a file and on a screen must be
+    changed at the first login, except if it ends with this run of the station.  Raises StoreError
+    if the disk does not take the user.
     """
     if accounts.users():
         return None
@@ -31,8 +31,8 @@ def ensure_administrator(accounts: Accounts, note: Path | None) -> str | None:
 
 
 def add_own_login(accounts: Accounts) -> tuple[str, str]:
-    """Name and password of an additional administrator, in a copy of a station's accounts: the user
-    of a copied folder has no account there.
+    """Add an administrator to a copy of a station's accounts, and return name and password: whoever
+    replays a copied folder has no account there.
     """
     username, password = f"replay-{secrets.token_hex(2)}", _password()
     accounts.add_user(username, password, Role.ADMINISTRATOR)

@@ -80,10 +80,10 @@ class IncidentCommandContext:
 def rebuild(
     data: Path, on_progress: Callable[[float], None], report: Callable[[str], None] = _log.warning
 ) -> int:
-    """Make the projections of a folder again; no station may be running on it.
+    """Make the projections of a folder again, and return the number of log records; no station may
+    be running on the folder.
 
-    ``on_progress`` receives the fraction done, ``report`` the losses of a damaged database.  Gives
-    the number of log records.
+    ``on_progress`` receives the fraction done, ``report`` what a damaged database has lost.
     """
     folder = DataFolder(data)
     folder.require()
@@ -104,7 +104,7 @@ def rebuild(
 
 
 def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]) -> None:
-    """Set aside the log behind a place, and make the projections again without it."""
+    """Set aside the log after a position, and make the projections again without it."""
     folder = DataFolder(data)
     lock = folder.lock()
     try:
@@ -128,11 +128,11 @@ def forget(
     confirm: Callable[[str], None],
     on_progress: Callable[[float], None],
 ) -> ErasureResult:
-    """Forget a person (id or name) or an incident (id).  A station that runs on the folder does it
+    """Erase a person (id or name) or an incident (id). A station that runs on the folder does it
     itself.  Units of the person are unassigned first.
 
-    ``confirm`` gets the subject and may raise.  Cut short, the station goes on with it when it is
-    started.
+    ``confirm`` is called with the subject and may raise.  If the erasure is interrupted, the
+    station continues it when it starts.
     """
     folder = DataFolder(data)
     folder.require()
@@ -188,7 +188,7 @@ class _Subject:
 
 
 def _subject(subject_name: str, store: Database) -> _Subject:
-    """UserError where it is not one person, or an incident is open."""
+    """Find the subject.  UserError if it is not exactly one person, or an incident that is open."""
     records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
     _require_no_open_incident(records, roster)
     incident = records.incident(subject_name)
@@ -205,7 +205,7 @@ def _subject(subject_name: str, store: Database) -> _Subject:
 
 
 def _open_beside(incident: IncidentRow, records: Records) -> list[IncidentRow]:
-    """Other incidents that were open while it was."""
+    """Other incidents that were open at the same time."""
     others = (one for one in records.incidents() if one.incident_id != incident.incident_id)
     return [
         one
@@ -216,7 +216,7 @@ def _open_beside(incident: IncidentRow, records: Records) -> list[IncidentRow]:
 
 
 def _person_id(subject_name: str, store: Database) -> str:
-    """The id, whether or not the person is on the roster still."""
+    """Id of the person, who need not be on the roster any more."""
     with store.read() as session:
         named = sorted(ids_of(session, subject_name))
     if len(named) > 1:
@@ -244,11 +244,11 @@ def open_post_processing(
     report: Callable[[str], None],
     on_progress: Callable[[float], None],
 ) -> IncidentCommandContext:
-    """A past incident, beside a running station or without one; in the place of the id also a
+    """Open a past incident, beside a running station or without one.  In place of an id it may be a
     file that has one incident.
 
     ``report`` receives a sentence about each part that cannot be read, ``on_progress`` the fraction
-    done where the log must be read first.
+    done if the log must be read first.
     """
     incident_id, data = named_incident(incident_id, data)
     offline_log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)
@@ -274,6 +274,6 @@ def open_post_processing(
 
 
 def open_accounts(data: Path, closing: ExitStack) -> tuple[Accounts, Records]:
-    """Accounts and audit of a folder's database, beside a running station or without one."""
+    """Open accounts and audit of a folder's database, beside a running station or without one."""
     store = closing.enter_context(open_database(DataFolder(data).require_database()))
     return Accounts(store, SystemClock()), Records(store, SystemClock())

@@ -57,7 +57,7 @@ def replay(
     listen: Listen = _LISTEN,
     insecure: Insecure = False,
 ) -> None:
-    """Show a past incident, which the time bar of Foxglove plays, until Ctrl-C."""
+    """Serve a past incident, which the time bar of Foxglove controls, until Ctrl-C."""
     host, port = _listening_address(listen, insecure=insecure)
     from base_station.app.offline_log import open_offline_log  # noqa: PLC0415
     from base_station.foxglove.replay import LogReplay  # noqa: PLC0415
@@ -86,7 +86,7 @@ def layout(
     out: Annotated[Path, typer.Argument(help="JSON file to write, for Foxglove to import.")],
     data: Data = _DATA,
 ) -> None:
-    """Write a layout with everybody in the log: map, alarms, temperatures and heights."""
+    """Write a layout with all units in the log: map, alarms, temperatures and heights."""
     _require_library()
     from base_station.foxglove.layout import make_layout  # noqa: PLC0415
     from base_station.foxglove.log_topics import topics_in, units_among  # noqa: PLC0415
@@ -108,7 +108,7 @@ def layout(
 def _serve(
     closing: ExitStack, host: str, port: int, name: str, window_ns: tuple[int, int] | None = None
 ) -> FoxgloveServer:
-    """Prints `ready ws://...` when Foxglove can connect."""
+    """Serve, and print `ready ws://...` when Foxglove can connect."""
     from base_station.foxglove.server import FoxgloveServer  # noqa: PLC0415
 
     server = FoxgloveServer(host, port, name, window_ns)
@@ -118,8 +118,8 @@ def _serve(
 
 
 def _listening_address(listen: str, *, insecure: bool) -> tuple[str, int]:
-    """Raises ConfigError for another machine's network without ``insecure``, UserError without the
-    library.
+    """Address to listen on.  Raises ConfigError for one that other machines can reach without
+    ``insecure``, UserError if the library is missing.
     """
     from base_station.config import host_and_port  # noqa: PLC0415
 

@@ -30,7 +30,7 @@ def health_facts(
     radio: tuple[RadioView, ...],
     archive: ArchiveView | None,
 ) -> StationFacts:
-    """``missing``: numbers of messages that no journal has any more."""
+    """Collect the facts.  ``missing``: number of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
     machine = resources.exposed, resources.router
     network = resources.presence, resources.console_presence

@@ -22,7 +22,7 @@ from shared.messages.station import SetFuser, SetThresholds
 
 
 class Housekeeping:
-    """Each round looks at everything once; actions are a leader's alone."""
+    """Periodic checks.  Each round looks at everything once; only a leader acts."""
 
     def __init__(self, parts: LiveParts, services: Services) -> None:
         self._parts = parts

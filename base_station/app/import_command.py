@@ -1,4 +1,4 @@
-"""``muster base import``: brings files from elsewhere into an incident, or takes them out."""
+"""``muster base import``: bring files from elsewhere into an incident, or remove them."""
 
 from __future__ import annotations
 

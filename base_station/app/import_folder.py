@@ -30,8 +30,8 @@ from shared.messages.station import RemoveImport
 
 @contextmanager
 def open_imports(data: Path, incident_id: str, by: str) -> Iterator[FolderImports]:
-    """Raises UserError where there is no such incident.  Where no station runs on the folder, it is
-    locked meanwhile.
+    """Open the imports of an incident.  Raises UserError if there is no such incident.  If no
+    station runs on the folder, it is locked meanwhile.
     """
     folder = DataFolder(data)
     folder.require()
@@ -57,7 +57,9 @@ class FolderImports:
     is_locked: bool  # no station runs on the folder
 
     def require_anchor(self) -> None:
-        """Raises UserError where the incident has no place on the Earth: nothing is taken then."""
+        """Raise UserError if the incident's place on the Earth is not known, as then nothing can be
+        imported.
+        """
         require_anchor(Records(self.store, SystemClock()), self.incident)
 
     def import_file(
@@ -67,8 +69,8 @@ class FolderImports:
         utc_offset_h: float | None = None,
         name: str = "",
     ) -> Sequence[str]:
-        """Gives lines about the content; ``name``: another one than the file's own.  Raises
-        UserError with the fault of the file.
+        """Import a file, and return lines about its content.  ``name`` replaces the file's own
+        name.  Raises UserError with the fault of the file.
         """
         desk = self._desk()
         incident_id = self.incident.incident_id
@@ -84,7 +86,9 @@ class FolderImports:
         return [] if row is None else [self._line(row), *self._warnings(row)]
 
     def remove(self, import_id: str) -> str:
-        """Gives the file's name.  Raises UserError where nothing of that id was brought in."""
+        """Remove an import, and return the file's name.  Raises UserError if there is none with
+        this id.
+        """
         row = self._catalogue.entry(self.incident.incident_id, import_id)
         if row is None:
             raise UserError(f"nothing with the id {import_id} was brought into this incident")
@@ -93,7 +97,7 @@ class FolderImports:
         return self._roster.shown(row.file_name)
 
     def lines(self) -> Iterator[str]:
-        """A line for each file, oldest first."""
+        """Lines for a list, one for each file, oldest first."""
         for row in Records(self.store, SystemClock()).imports_of(self.incident.incident_id):
             yield self._line(row)
 

@@ -27,11 +27,11 @@ from shared.service_manager import ServiceManager
 def run_station(
     config: StationConfig, announce: Announce, loading_router: Popen[str] | None = None
 ) -> None:
-    """The live station, until SIGINT or SIGTERM.  ``announce`` receives lines for a person;
-    ``loading_router`` becomes the bus's first router.
+    """Run the live station until SIGINT or SIGTERM. ``announce`` receives lines for a person;
+    ``loading_router`` becomes the first router of the bus.
 
-    Raises ConfigError where no alarm rule can have the thresholds of the settings, or there is no
-    such fuser, or a radio channel has a name that it cannot have.
+    Raises ConfigError if a threshold of the settings is not valid for its alarm rule, if there is
+    no such fuser, or if a radio channel has an invalid name.
     """
     require_fuser(config.positioning.fuser)
     require_channel_names(config.radio)

@@ -31,7 +31,7 @@ from shared.mcap_log import LogRecord
 
 
 def new_services(parts: LiveParts) -> Services:
-    """Services of the API."""
+    """Create the services of the API."""
     resources, disk = parts.resources, parts.resources.disk
     log_process = _log_process(parts)
     return Services(
@@ -74,7 +74,7 @@ def new_services(parts: LiveParts) -> Services:
 
 
 def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]) -> ConsoleServer:
-    """Server of consoles and API; ``on_stop`` is called as it begins to stop."""
+    """Create the server of consoles and API. ``on_stop`` is called when it begins to stop."""
     hub, http = parts.resources.hub, parts.resources.config.http
     app = create_app(services, started=lambda loop: hub.connect(loop, parts.engine))
     return console_server(app, parts.resources.listening, http, on_stop)
@@ -95,7 +95,7 @@ def _log_process(parts: LiveParts) -> LogProcess:
 
 
 def _past_log(disk: StationStorage) -> ReadLog:
-    """The log of some time, wherever it is."""
+    """Log of a span of time, wherever it is kept."""
 
     def read(from_ns: int, until_ns: int, keys: Collection[str]) -> Iterable[LogRecord]:
         return disk.archived_logs.feed(disk.log, from_ns, until_ns).records(from_ns, until_ns, keys)
@@ -104,7 +104,7 @@ def _past_log(disk: StationStorage) -> ReadLog:
 
 
 def _log_of_incident(disk: StationStorage) -> Callable[[IncidentRow], LogFeed]:
-    """The log of an incident, wherever it is."""
+    """Log of an incident, wherever it is kept."""
     return lambda incident: disk.archived_logs.feed_of(incident) or disk.log
 
 

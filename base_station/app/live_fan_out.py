@@ -1,4 +1,4 @@
-"""Gives snapshots and deltas for consoles, and projections, to forwarders too."""
+"""Passes snapshots, deltas and projections on to consoles or tables, and to forwarders."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from base_station.views.wire import Delta, Snapshot
 
 
 class LiveFanOut:
-    """A ``LiveSink``: the console hub first, then the forwarders."""
+    """``LiveSink`` that passes on to the console hub first, then to the forwarders."""
 
     def __init__(self, hub: LiveSink, forwarders: Forwarders) -> None:
         self._hub = hub
@@ -24,14 +24,14 @@ class LiveFanOut:
         self._forwarders.reset(snapshot)
 
     def start(self, source: LiveSource) -> None:
-        """Start the forwarders with the picture of now."""
+        """Start the forwarders with the present picture."""
         if not self._forwarders.is_empty:  # a picture of everybody costs the engine something
             source.request_snapshot(lambda snapshot, _: self._forwarders.reset(snapshot))
         self._forwarders.start()
 
 
 class ProjectionFanOut:
-    """A ``ProjectionSink``: the tables first, then the forwarders."""
+    """``ProjectionSink`` that passes on to the tables first, then to the forwarders."""
 
     def __init__(self, tables: ProjectionSink, forwarders: Forwarders) -> None:
         self._tables = tables

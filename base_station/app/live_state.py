@@ -1,4 +1,4 @@
-"""Live state as the station's parts ask for it, which has none until the log has been read."""
+"""Live state for the other parts of the station.  There is none until the log has been read."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from base_station.fusion import FUSERS
 
 
 class LiveState:
-    """From any thread."""
+    """Access to the live state.  Thread-safe."""
 
     def __init__(self, thresholds: Thresholds, fuser: str) -> None:
-        """Thresholds of the alarm rules and name of the fuser, by the settings."""
+        """Thresholds of the alarm rules and name of the fuser, from the settings."""
         self.configured_thresholds = thresholds
         self.configured_fuser = fuser
         self._state: StationState | None = None
 
     def begin(self, state: StationState) -> None:
-        """The log has been read."""
+        """Set the live state, once the log has been read."""
         self._state = state
 
     def is_in_incident(self) -> bool:
@@ -28,15 +28,15 @@ class LiveState:
 
     @property
     def problems(self) -> Mapping[str, str]:
-        """Problems of the station's parts, by the log."""
+        """Problems of the station's parts, from the log."""
         return {} if self._state is None else self._state.problems
 
     @property
     def thresholds(self) -> Thresholds:
-        """Thresholds of the alarm rules in use, by the log."""
+        """Thresholds of the alarm rules in use, from the log."""
         return self.configured_thresholds if self._state is None else self._state.thresholds
 
     @property
     def fuser(self) -> str:
-        """Name of the fuser in use, by the log."""
+        """Name of the fuser in use, from the log."""
         return self.configured_fuser if self._state is None else self._state.fuser or FUSERS[0].name

@@ -1,4 +1,4 @@
-"""Logs an action of a command in a folder that no station runs on, as the station would have."""
+"""Logs an action in a folder on which no station runs, in the way the station would."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ from shared.messages.station import Action
 
 
 def log_action(folder: DataFolder, store: Database, by: str, action: Action) -> None:
-    """In a segment of its own behind all others, and in the tables.  The folder is locked.
+    """Log an action in a segment of its own after all others, and project it to the tables.  The
+    folder is locked.
 
-    Raises LogError where the disk does not take it.
+    Raises LogError if the disk does not take it.
     """
     clock = SystemClock()
     behind_all = max((one.end_ns for one in folder.segments()), default=0) + 1

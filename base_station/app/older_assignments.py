@@ -12,7 +12,7 @@ from shared.messages.station import Assign
 
 
 class OlderAssignments:
-    """Used by the leading station, from one thread."""
+    """Renewal by the leading station, from one thread."""
 
     def __init__(self, roster: Roster, gate: OperatorGate) -> None:
         self._roster = roster
@@ -20,7 +20,9 @@ class OlderAssignments:
         self._is_done = False
 
     def renew(self) -> None:
-        """Submit each such assignment again, once in a run; names in the log are not changed."""
+        """Submit each such assignment again, once in a run.  Names that are in the log already are
+        not changed.
+        """
         if self._is_done:
             return
         self._is_done = True

@@ -1,4 +1,4 @@
-"""The pipelines of a station, with its alarm rules and its fuser."""
+"""Pipelines of a station, with its alarm rules and its fuser."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from shared.errors import ConfigError
 
 
 def require_fuser(name: str) -> None:
-    """Raises ConfigError where there is no fuser of that name."""
+    """Raise ConfigError if there is no fuser of that name."""
     if fuser_named(name) is None:
         names = [kind.name for kind in FUSERS]
         raise ConfigError(f"positioning.fuser: there is no {name!r}; {nearest(name, names, names)}")

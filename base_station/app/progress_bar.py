@@ -1,4 +1,4 @@
-"""The progress of a command, on a terminal."""
+"""Progress of a command, on a terminal."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Callable[[float], None]]:
-    """Progress bar, shown from the first report until all is done."""
+    """Progress bar that is shown from the first report until the work is done."""
     from rich.progress import Progress  # noqa: PLC0415  # it takes its time, and may not be shown
 
     with ExitStack() as shown:

@@ -1,4 +1,4 @@
-"""Composition of the pull of one recording beside a running station, whose router it uses."""
+"""Composition for the transfer of one recording beside a running station, whose router is used."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ _REST_S = 0.5  # when the unit does not answer
 
 
 def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
-    """Station times of an incident, one that is open until now.  Raises UserError."""
+    """Start and end of an incident in station time; of an open one, until now.  Raises
+    UserError.
+    """
     with ExitStack() as closing:
         records = Records(_store(config, closing), SystemClock())
         incident = records.require_incident(incident_id)
@@ -39,16 +41,16 @@ def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
 
 
 def since(config: StationConfig, from_ns: int) -> tuple[int, int]:
-    """Station times from then until now."""
+    """Start and end, in station time, of the span from a time until now."""
     with ExitStack() as closing:
         return from_ns, _now_ns(Records(_store(config, closing), SystemClock()))
 
 
 def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Path, str]:
-    """Pull a recording; ``show`` is called at every step.  Gives its folder, and a sentence about
-    its missing parts.
+    """Transfer a recording; ``show`` is called at every step.  Returns its folder, and a sentence
+    about parts that are missing.
 
-    Raises MusterError, one sentence, where it comes to nothing.
+    Raises MusterError with one sentence if nothing can be transferred.
     """
     clock = SystemClock()
     with ExitStack() as closing:
@@ -75,7 +77,9 @@ def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Pa
 
 
 def _now_ns(records: Records) -> int:
-    """Station time, which goes on from the recorded time where a clock was set back."""
+    """Station time now; it continues from the last recorded time if the machine's clock was set
+    back.
+    """
     recorded_ns = max((one.last_ns for one in records.segments()), default=0)
     return SteadyClock(SystemClock(), recorded_ns).utc_ns()
 

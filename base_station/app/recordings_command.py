@@ -30,7 +30,9 @@ def fetch_recording(
         list[str] | None, typer.Option(help="Where the station's router listens.")
     ] = None,
 ) -> None:
-    """Pull a unit's raw recording while the station runs; started again, it continues."""
+    """Transfer a unit's raw recording while the station runs; if it is started again, it
+    continues.
+    """
     from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn  # noqa: PLC0415
 
     from base_station.app.recordings_app import pull, since, window_of  # noqa: PLC0415
@@ -70,7 +72,7 @@ def _show(progress: Progress, task: TaskID, fetch: Transfer) -> None:
 
 
 def _ns(text: str) -> int:
-    """Station time; without a zone it is this machine's."""
+    """Station time in nanoseconds; a time without a zone is in this machine's zone."""
     try:
         return round(datetime.fromisoformat(text).timestamp() * NS_PER_S)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Puts together a station that shows one past incident and writes nothing."""
+"""Composition of a station that shows one past incident and writes nothing."""
 
 from __future__ import annotations
 
@@ -47,15 +47,15 @@ def run_replay_station(
     recompute: bool = False,
     archive: str | None = None,
 ) -> None:
-    """A station that shows one past incident, and writes nothing to the folder.
+    """Run a station that shows one past incident and writes nothing to the folder.
 
-    It plays the recorded pictures of consoles; with ``recompute``, and where the log has none, all
-    decisions are made again.
+    It plays what the log has recorded of consoles; with ``recompute``, or if the log has no such
+    recording, all decisions are made again.
 
-    ``archive``: the incident is read there, and the folder is not asked.
-    ``incident_id`` may be a file that has one incident.  A live station may be running on the
-    folder: the database is copied first.  Where that does not have the incident, its tables are
-    made from the log while the replay runs.
+    With ``archive`` the incident is read from there and the folder is not used.  ``incident_id``
+    may be a file that has one incident.  A live station may be running on the folder: the database
+    is copied first.  If the database does not have the incident, its tables are made from the log
+    while the replay runs.
     """
     clock = SystemClock()
     with ExitStack() as closing:

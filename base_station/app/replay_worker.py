@@ -67,7 +67,7 @@ from shared.errors import MusterError
 
 
 def work(line: FrameChannel) -> None:
-    """The job that comes first, until it is done or the line is closed."""
+    """Do the first job that comes, until it is finished or the connection is closed."""
     encoded = line.receive()
     if encoded is None:
         return  # it is not wanted any more

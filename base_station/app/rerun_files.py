@@ -1,4 +1,4 @@
-"""Files that a re-run leaves: figures, a page with pictures, and its trails for other programs."""
+"""Files that a re-run writes: figures, a page with pictures, and its trails for other programs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ TRAILS = "trails.gpx"  # where the site has its place on the Earth
 
 
 def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
-    """Names of the files, each of which is whole or not there.  Raises UserError."""
+    """Write the files and return their names.  Each is complete or does not exist.  Raises
+    UserError.
+    """
     worn = wearers(opened.roster, opened.incident, opened.records.members_of(opened.incident))
     names = {unit_id: ", ".join(people) for unit_id, people in worn.items()}
     tracks = incident_tracks(opened.records, opened.roster, opened.incident, result.rerun)

@@ -1,4 +1,6 @@
-"""Resources of a live station, opened before anything runs: folder, port, disk, router and bus."""
+"""Resources of a live station that are opened before any part runs: folder, port, disk, router and
+bus.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ from shared.mcap_log import SegmentPolicy
 
 @dataclass(frozen=True)
 class Resources:
-    """None of them depends on the station."""
+    """Resources; none of them depends on the station."""
 
     config: StationConfig
     clock: Clock  # the machine's; the station's own is the disk's
@@ -60,7 +62,9 @@ def open_station(
     closing: ExitStack,
     loading_router: Popen[str] | None = None,
 ) -> Resources:
-    """Raises MusterError, before anything is made where the settings cannot work."""
+    """Open the resources.  If the settings cannot work, raises MusterError before anything is
+    created.
+    """
     joining, pki = station_endpoint(config.data, config.bus.listen), PkiFolder(config.data)
     if joining.tls is not None:
         pki.require_valid_station()

@@ -26,9 +26,10 @@ def search(
     end: End = None,
     limit: Annotated[int, typer.Option(min=1, help="The newest so many.")] = 50,
 ) -> None:
-    """Find incidents that meet all criteria; case and accents do not count.
+    """Find incidents that meet all criteria; case and accents are ignored.
 
-    Of an incident that is in an archive it prints which one; muster base archive list has more.
+    For an incident that is only in an archive it prints the archive; `muster base archive list`
+    prints more about it.
     """
     from base_station.storage.data_folder import DataFolder  # noqa: PLC0415
     from base_station.storage.db.archived import ArchivedCopies  # noqa: PLC0415

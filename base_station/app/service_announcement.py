@@ -1,4 +1,4 @@
-"""Announcement on the network that is kept as it should be: begun, replaced and taken back."""
+"""Announcement on the network that is begun, replaced and withdrawn as its content changes."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ AnyAnnouncement = Announcement | ConsoleAnnouncement
 
 
 class ServiceAnnouncement:
-    """As a context manager it takes the announcement back at the end."""
+    """Announcement; as a context manager it withdraws the announcement at the end."""
 
     def __init__(self, log: logging.Logger, failing: str) -> None:
-        """``failing``: sentence for the log while there is no announcement, without its cause."""
+        """``failing``: sentence for the log about a failing announcement, without the cause."""
         self._fault_log = LogOnChange(log, failing)
         self._announced: AnyAnnouncement | None = None
         self._announcer: Announcer | None = None
@@ -29,13 +29,13 @@ class ServiceAnnouncement:
 
     @property
     def fault(self) -> str:
-        """Reason of the last failure; empty: the last attempt did not fail."""
+        """Reason of the last failure; empty if the last attempt succeeded."""
         return self._fault_log.fault
 
     def keep(
         self, wanted: Callable[[], AnyAnnouncement], interfaces: Callable[[], tuple[str, ...]]
     ) -> None:
-        """Announce the present state; a failure is tried again the next time."""
+        """Announce the present content; after a failure the next call tries again."""
         with self._fault_log:
             now = wanted()
             if now == self._announced:

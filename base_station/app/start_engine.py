@@ -1,4 +1,4 @@
-"""Brings the live state to where the log ends, and lets time pass from there."""
+"""Reads the log up to its end into the live state, and lets time pass from there."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ def start_engine(
     recovery: AbstractContextManager[Watch],
     plans: PlanReader,
 ) -> StationEngine:
-    """A drive with the live state of the log; ``begin`` receives that before the drive runs."""
+    """Return an engine with the live state of the log; ``begin`` receives that state before the
+    engine runs.
+    """
     pipeline = new_pipeline(saved.pipeline if saved else None, plans)
     drive = StationEngine(pipeline, ports)
     log_position = (saved.t_ns, saved.events_at_t) if saved else (0, 0)

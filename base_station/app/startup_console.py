@@ -1,4 +1,4 @@
-"""Read-only console of the stored snapshot, while a station that starts is reading its log."""
+"""Read-only console of the stored snapshot, shown while a starting station reads its log."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class _Progress:
 
 
 class _StartupServer:
-    """Serves in a thread of its own, on a second handle to the socket."""
+    """Server in a thread of its own, on a second handle to the socket."""
 
     def __init__(self, app: ASGIApp, listening: socket.socket, http: HttpConfig) -> None:
         self._server = ConsoleServer(app, listening.dup(), http.certificate, http.private_key)
@@ -127,7 +127,7 @@ class _StartupServer:
 def startup_application(
     config: StationConfig, disk: StationStorage
 ) -> tuple[ASGIApp, ReportProgress]:
-    """The application, and a function that takes the fraction of the log read."""
+    """Return the application, and a function that takes the fraction of the log that was read."""
     hub = Hub()
     known = StoredSnapshotSource(disk.roster, disk.records, disk.clock, hub)
     services = Services(

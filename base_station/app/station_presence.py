@@ -1,7 +1,7 @@
 """Announcement of the station on its network, if the settings have it.
 
-A unit verifies the address that it connects to by the station's certificate.  So only addresses
-that the certificate stands for are announced; where it stands for none, the health page shows it.
+A unit verifies the address to which it connects by the station's certificate.  So only addresses in
+the certificate are announced; if it has none of this machine, the health page shows it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ _log = logging.getLogger(__name__)
 
 
 class StationPresence(ServiceAnnouncement):
-    """Kept as the machine's addresses and the certificate are; ``update`` now and then."""
+    """Announcement that follows the machine's addresses and the certificate; ``update`` is to be
+    called regularly.
+    """
 
     def __init__(
         self,
@@ -32,7 +34,7 @@ class StationPresence(ServiceAnnouncement):
         config: StationConfig,
         own: Callable[[], Iterable[str]] = own_hosts,
     ) -> None:
-        """``own``: gives the addresses of this machine."""
+        """``own`` returns the addresses of this machine."""
         super().__init__(_log, "the station is not announced on its network")
         self._pki = pki
         self._own = own
@@ -41,13 +43,13 @@ class StationPresence(ServiceAnnouncement):
         self._not_covered: tuple[str, ...] = ()
 
     def update(self) -> None:
-        """Announce the present state; a failure is tried again the next time."""
+        """Announce the present state; after a failure the next call tries again."""
         if not self._endpoints:
             return
         self.keep(self._wanted, self._interfaces)
 
     def problems(self) -> tuple[str, ...]:
-        """Sentences for the console."""
+        """Sentences about problems, for the console."""
         if self.fault:
             text = coded(
                 "station-not-announced",
@@ -84,10 +86,10 @@ class StationPresence(ServiceAnnouncement):
         return endpoint_address(self._endpoints[0])[1]
 
     def _listening_hosts(self) -> tuple[str, ...]:
-        """Addresses at which the bus takes connections on the port that is announced."""
+        """Addresses at which the bus accepts connections on the announced port."""
         given = [endpoint_address(one) for one in self._endpoints]
         return reachable_addresses([host for host, port in given if port == self._port], self._own)
 
     def _interfaces(self) -> tuple[str, ...]:
-        """Those that the bus listens on; none: all."""
+        """Interfaces on which the bus listens; none if it is all of them."""
         return interfaces_of([endpoint_address(one)[0] for one in self._endpoints])

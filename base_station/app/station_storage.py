@@ -73,7 +73,7 @@ class StationStorage:
 
     @property
     def log(self) -> LogFeed:
-        """Feed of the records that are written up to the moment of reading."""
+        """Feed of the records that were written until it is read."""
         return FolderFeed(self.folder.log, self.recorder.flush, self.check.recheck)
 
     @property
@@ -87,8 +87,9 @@ class StationStorage:
         return ArchivedLogs(copies, self.records, self.recorder.segments, self.known_segments)
 
     def latest_state(self) -> SavedState | None:
-        """Checkpoint to go on from: also one whose place in the log was lost since.  It has the
-        actions and messages until then, so that the lost ones are known to be missing.
+        """Newest checkpoint to continue from.  It may be one whose position in the log has been
+        lost since: it has the actions and messages until then, so that the lost ones are known to
+        be missing.
         """
         return replace(self.archive, has_lost=self.check.has_lost).latest()
 
@@ -108,7 +109,7 @@ class StationStorage:
             return ()
 
     def note_restored_rows(self, what: str) -> None:
-        """Note that rows which the database had lost with its file are there again."""
+        """Note that rows which the database had lost with its file are restored."""
         self.store.loss = ""
         self.records.audit(STATION_ID, "TookBackAccounts", what)
 
@@ -135,9 +136,9 @@ class StationStorage:
         has_peer: Callable[[], bool],
         erase_audio: EraseAudio,
     ) -> ErasureQueue:
-        """``act`` makes the running station erase its memory, ``save_soon`` makes it save its
-        state, which the erasure has removed.  ``has_peer``: the other one of two is reachable.
-        ``erase_audio``: as of ``ErasureService``.
+        """Make the queue of erasures.  ``act`` makes the running station erase its memory;
+        ``save_soon`` makes it save its state, which the erasure has deleted.  ``has_peer``: the
+        other one of two stations can be reached.  ``erase_audio``: as in ``ErasureService``.
         """
 
         def record_result(done: ErasureJob) -> None:
@@ -180,10 +181,11 @@ def open_storage(
     *,
     alone: bool = True,
 ) -> StationStorage:
-    """The database is made from the log where it is damaged, or lacks what that knows.  ``server``
-    has its tables; None: they are in a file.  ``alone``: no other station has a copy of that.
+    """Open the storage.  The database is made from the log if it is damaged or lacks what the log
+    has.  ``server`` has the tables; None if they are in a file.  ``alone``: no other station has a
+    copy of them.
 
-    Raises StoreError where the database cannot be used, or is of another log.
+    Raises StoreError if the database cannot be used, or belongs to another log.
     """
     store, salvage = _open_database(folder.database, recorder, server, announce)
     closing.enter_context(store)
@@ -232,7 +234,7 @@ def open_storage(
 def _open_database(
     path: Path, recorder: Recorder, server: ServerAddress | None, announce: Announce
 ) -> tuple[Database, Salvage | None]:
-    """Raises StoreError."""
+    """Open the database.  Raises StoreError."""
     require_noted_server(path, server)
     if server is None:
         return open_live(path, lambda: recorder.hangs)
@@ -252,9 +254,9 @@ def _numbers(names: Iterable[str]) -> list[int]:
 
 
 def _lacks_records(store: Database, recorder: Recorder, segments: Sequence[KnownSegment]) -> bool:
-    """True where it is new, or was not made from the log to its end.  Raises StoreError
-    where it has another log's: two incidents would be one.  One that goes on behind a log that is
-    gone begins with a higher number.
+    """True if the database is new, or was not made from the log to its end.  Raises StoreError if
+    it belongs to another log, as two incidents would become one.  A log that continues after one
+    that is gone begins with a higher number.
     """
     logged = {one.path.name for one in recorder.segments() if one.messages}
     known = {one.name for one in segments}

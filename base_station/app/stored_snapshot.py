@@ -1,8 +1,8 @@
-"""Stored snapshot, for consoles while a station that starts is still reading its log.
+"""Stored snapshot, for consoles while a starting station is still reading its log.
 
-A log without a saved state takes minutes to be read, and a commander needs the last positions of
-members, with their times, and the alarms meanwhile.  The tables have them.  Nothing here is live:
-every unit counts as not linked, and no change is possible.
+Reading a log without a saved state takes minutes.  Meanwhile a commander needs the last positions
+of members, with their times, and the alarms; the tables have them.  Nothing in it is live: every
+unit counts as not linked, and no change is possible.
 """
 
 from __future__ import annotations
@@ -53,7 +53,9 @@ _STORED = TrustView("red", str(_STORED_REASON), text_code_views(code_of_text(_ST
 
 
 class StoredSnapshotSource:
-    """A ``LiveSource``; and an ``OperatorGate`` and a status that refuse actions with a reason."""
+    """``LiveSource`` of the snapshot, which is also an ``OperatorGate`` and a status that refuse
+    actions with a reason.
+    """
 
     def __init__(self, roster: Roster, records: Records, clock: Clock, sink: LiveSink) -> None:
         self._roster = roster
@@ -66,11 +68,13 @@ class StoredSnapshotSource:
         self._fault_log = LogOnChange(_log, "what was last stored cannot be shown")
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
-        """Raises StoreError where the tables cannot be read."""
+        """Give the snapshot to one console.  Raises StoreError if the tables cannot be read."""
         deliver(*self.snapshot())
 
     def report_progress(self, fraction: float) -> None:
-        """Takes the fraction of the log that is read; goes on whatever the tables do."""
+        """Show the fraction of the log that was read; continues even if the tables cannot be
+        read.
+        """
         self._fraction = fraction
         now_ns = self._clock.monotonic_ns()
         if now_ns - self._published_ns >= _PUBLISH_EVERY_NS:
@@ -190,13 +194,13 @@ class StoredSnapshotSource:
         return PersonView(worn.person_id, *msgspec.structs.astuple(shown))
 
     def _incident(self, incident: models.IncidentRow) -> IncidentView:
-        """Incident as stored; no PAR counts down while nothing is live."""
+        """Incident as it is stored; no PAR counts down while nothing is live."""
         name, opened_ms = self._roster.shown(incident.name), to_ms(incident.opened_ns)
         return IncidentView(incident.incident_id, name, opened_ms, None, 0.0, 0.0, 0.0)
 
 
 def _position(sample: TrackSample) -> PositionView:
-    """The larger error on both axes: the tables have no more of the region."""
+    """Position with the larger error on both axes, as the tables do not have more of the region."""
     radius_m = RADII_95 * max(sample.std_north_m, sample.std_east_m)
     return PositionView(
         t_ms=to_ms(sample.t_ns),
@@ -221,7 +225,7 @@ def _position(sample: TrackSample) -> PositionView:
 
 
 def _grown(unit: UnitView, now_ms: int) -> UnitView:
-    """Grows the region of a position by the time since, as for every unit without a link."""
+    """Position with its region enlarged by the time since, as for every unit without a link."""
     position = unit.position
     if position is None:
         return unit

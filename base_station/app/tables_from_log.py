@@ -1,4 +1,4 @@
-"""Tables of a log without a database, made while its replay runs already."""
+"""Tables for a log without a database, made while its replay runs already."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from shared.worker import UNTIL_WOKEN, Worker
 
 
 class TablesFromLog:
-    """``ProjectedTables`` that are made while it is entered.  Until they are complete, they refuse
-    to be read: a part of a list would be taken for all of it.
+    """``ProjectedTables`` that are made while it is entered.  Until they are complete, reading is
+    refused, as a part of a list would be taken for all of it.
     """
 
     def __init__(self, offline_log: OfflineLog, announce: Announce) -> None:
@@ -43,7 +43,7 @@ class TablesFromLog:
         return self._is_complete
 
     def flush_soon(self) -> Callable[[], bool]:
-        """As of ``ProjectedTables``.  Raises StoreError where the tables are not complete."""
+        """As in ``ProjectedTables``. Raises StoreError if the tables are not complete."""
         if self._problem:
             raise StoreError(
                 coded(
@@ -63,7 +63,7 @@ class TablesFromLog:
         return self.flush
 
     def flush_actions_soon(self) -> Callable[[], bool]:
-        """Complete from the beginning (``OfflineLog.lacks_tables``)."""
+        """Return at once: actions are complete from the beginning (``OfflineLog.lacks_tables``)."""
         return lambda: True
 
     def _make(self) -> float:

@@ -1,5 +1,5 @@
-"""Reports to units of the messages that the station has, by which their journals are backfilled
-and acknowledged.
+"""Reports to units of the messages that the station has.  Their journals are backfilled and
+acknowledged by these.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from base_station.unit_sync.durable_ack import DurableAckGate
 
 
 class UnitReports:
-    """The engine reports; any other thread counts and asks."""
+    """Reports of the engine; any other thread may count and ask."""
 
     def __init__(self, resources: Resources, ha_mode: HaMode) -> None:
         self._ha_mode = ha_mode

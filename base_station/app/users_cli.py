@@ -16,7 +16,7 @@ users = typer.Typer(help="Who may log in.", no_args_is_help=True)
 
 @users.command("list")
 def list_users(data: Path = Path("muster-data")) -> None:
-    """Names and roles."""
+    """List the users with their roles."""
     from base_station.app.folder_commands import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:

@@ -1,4 +1,4 @@
-"""The process that has loaded the program, of which copies look at the past (``server``)."""
+"""Process that has loaded the program, of which copies work on the past (``server``)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _log = logging.getLogger(__package__)
 
 
 def serve(control: socket.socket) -> None:
-    """A copy for every socket that comes, until no more can."""
+    """Make a copy for every socket that comes, until no more can come."""
     while True:
         try:
             message, fds, _, _ = socket.recv_fds(control, 1, 1)
@@ -36,7 +36,7 @@ def serve(control: socket.socket) -> None:
 
 
 def _run_copy(fd: int) -> NoReturn:
-    """It never returns into the code of the process that it is a copy of."""
+    """Run in the copy.  It never returns into the code of the process from which it was copied."""
     from base_station.app.replay_worker import work  # noqa: PLC0415  # loaded already
 
     code = 1
@@ -53,7 +53,7 @@ def _run_copy(fd: int) -> NoReturn:
 
 
 def _prefer_for_oom_kill() -> None:
-    """Makes this process the first that the kernel ends where memory runs out."""
+    """Make this process the first that the kernel ends if memory runs out."""
     with suppress(OSError):  # missing on some systems
         Path("/proc/self/oom_score_adj").write_text(str(_OOM_SCORE), encoding="ascii")
 

@@ -31,7 +31,7 @@ class _Running:
 
 
 class ArchiveReplays:
-    """Thread-safe.  ``close`` ends all of them."""
+    """Replays that run.  Thread-safe.  ``close`` ends all of them."""
 
     def __init__(self, config: DepartmentArchiveConfig, http: HttpConfig) -> None:
         self._config, self._http = config, http
@@ -39,9 +39,9 @@ class ArchiveReplays:
         self._running: dict[tuple[str, str], _Running] = {}  # the latest request is last
 
     def open(self, station: str, incident_id: str) -> StartedReplay:
-        """One that runs already is given again; beyond the limit the oldest ends.
+        """Open a replay, or return the one that runs already; beyond the limit the oldest ends.
 
-        Raises ArchiveError with the reason where it does not start.
+        Raises ArchiveError with the reason if it does not start.
         """
         key = station, incident_id
         with self._lock:
@@ -85,7 +85,7 @@ class ArchiveReplays:
         return _Running(process, StartedReplay(port, username, password))
 
     def _tls(self) -> tuple[str, ...]:
-        """Files of this page's certificate, which is of the same machine."""
+        """Files of this page's certificate, which is for the same machine."""
         files: tuple[Path | None, ...] = self._http.certificate, self._http.private_key
         return tuple(str(one) for one in files if one is not None)
 

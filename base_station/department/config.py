@@ -1,4 +1,4 @@
-"""The department's settings; every default stands here."""
+"""Settings of the department, with their defaults."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shared.config import Within
 
 @dataclass(frozen=True, slots=True)
 class DepartmentArchiveConfig:
-    """Archive of the stations' past incidents, each station's below its name."""
+    """Archive of the stations' past incidents, those of each station in a folder of its name."""
 
     location: str = ""  # a folder, or s3://BUCKET/PLACE; empty: past incidents are not opened here
     first_port: Annotated[int, Within(1, 65_000)] = 8091  # of replays, one each
@@ -29,7 +29,7 @@ def _http() -> HttpConfig:
 
 @dataclass(frozen=True, slots=True)
 class DepartmentServerConfig(ServerConfig):
-    """Other ports than a station's, as both may be on one machine."""
+    """Ports, which differ from a station's, as both may run on one machine."""
 
     data: Path = Path("muster-department")  # database, certificates and first login
     bus: BusConfig = field(default_factory=_bus)  # where stations connect

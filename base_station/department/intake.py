@@ -1,4 +1,4 @@
-"""Receives reports of stations: summaries go into the picture, events into the tables."""
+"""Intake of the stations' reports: summaries go into the picture, events into the tables."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ logger = logging.getLogger(__name__)
 
 
 class ReportIntake:
-    """``open`` it with the bus; ``keep_summaries`` now and then, from any thread."""
+    """Intake; ``open`` it with the bus, and call ``keep_summaries`` regularly, from any thread."""
 
     def __init__(
         self,
@@ -39,7 +39,7 @@ class ReportIntake:
         clock: Clock,
         on_stored: Callable[[], None],
     ) -> None:
-        """``on_stored``: called when events are in the tables, from any thread."""
+        """``on_stored`` is called when events are in the tables, from any thread."""
         self._tables, self._picture, self._clock = tables, picture, clock
         self._on_stored = on_stored
         self._fault_log = LogOnChange(logger, "what stations report is not stored")
@@ -60,7 +60,7 @@ class ReportIntake:
 
     @property
     def problem(self) -> str:
-        """Sentence for a person; empty: all is stored."""
+        """Sentence for a person; empty if everything is stored."""
         unreadable = ""
         if self._unreadable:
             unreadable = coded(
@@ -71,7 +71,7 @@ class ReportIntake:
         return join_texts((self._fault_log.fault, unreadable))
 
     def person(self, station: str, person_id: str) -> KnownPerson:
-        """Name of a station's person; who was never named is shown by the id."""
+        """Name of a station's person; the id if no name was ever reported."""
         with self._lock:
             known = self._people.get((station, person_id))
         return known or KnownPerson(f"person {person_id[:8]}" if person_id else "")
@@ -86,7 +86,7 @@ class ReportIntake:
         self._picture.take(StationPicture.of(station, summary, now_ns, monotonic_ns))
 
     def take_events(self, key: str, _: str, payload: bytes) -> Iterable[bytes]:
-        """Answer a batch with a receipt, once it is on the disk."""
+        """Answer a batch with a receipt, once the batch is on disk."""
         return self._receipts(key, payload)
 
     def _receipts(self, key: str, payload: bytes) -> Iterator[bytes]:
@@ -113,7 +113,7 @@ class ReportIntake:
             yield pack(EventReceipt(batch.epoch, reported.last_seq))
 
     def keep_summaries(self) -> None:
-        """Write those that are newer than the ones in the tables.  Raises StoreError."""
+        """Write the summaries that are newer than those in the tables.  Raises StoreError."""
         rows = []
         for station, pictures in self._picture.all().items():
             newest = max(pictures, key=lambda one: one.received_ns)

@@ -15,7 +15,7 @@ CLOCK_LIMIT_MS = 5_000  # a clock that is further off is reported
 
 @dataclass(slots=True)
 class IncidentCounts:
-    """People of one incident, and how many of them need something."""
+    """Number of people in one incident, and of those who need something."""
 
     people: int = 0
     maydays: int = 0
@@ -25,7 +25,7 @@ class IncidentCounts:
 
 @dataclass(frozen=True, slots=True)
 class StationPicture:
-    """A station as it reported itself last."""
+    """State that a station has reported last."""
 
     station: str
     summary: Summary
@@ -38,7 +38,7 @@ class StationPicture:
     def of(
         station: str, summary: Summary, received_ns: int, received_monotonic_ns: int | None
     ) -> StationPicture:
-        """Counted and put in order once, however often it is shown."""
+        """Make a picture, which is counted and sorted once, however often it is shown."""
         counts: dict[str, IncidentCounts] = {}
         for person in summary.people:
             count = counts.setdefault(person.incident_id, IncidentCounts())
@@ -51,11 +51,11 @@ class StationPicture:
 
     @property
     def offset_ms(self) -> int:
-        """Lead of the station's clock over the department's."""
+        """Time by which the station's clock is ahead of the department's."""
         return self.summary.t_ms - self.received_ns // NS_PER_MS
 
     def silent_ns(self, now_ns: int, now_monotonic_ns: int) -> int:
-        """Time since it was received; the department's clock may be set meanwhile."""
+        """Time since it was received; setting the department's clock does not change it."""
         if self.received_monotonic_ns is None:
             return max(now_ns - self.received_ns, AWAY_AFTER_NS)
         return now_monotonic_ns - self.received_monotonic_ns
@@ -67,12 +67,12 @@ def is_overdue(person: PersonSummary, t_ms: int) -> bool:
 
 
 def rank_of(person: PersonSummary, t_ms: int) -> tuple[bool, int, bool, str]:
-    """Sorts who needs help first: mayday, alarms, PAR overdue at ``t_ms``, then by unit."""
+    """Sort key by need of help: mayday, alarms, PAR overdue at ``t_ms``, then by unit."""
     return not person.mayday, -len(person.alarms), not is_overdue(person, t_ms), person.unit_id
 
 
 class LivePicture:
-    """Thread-safe."""
+    """Pictures of all stations.  Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -80,7 +80,7 @@ class LivePicture:
         self._pictures: dict[str, dict[int, StationPicture]] = {}
 
     def take(self, picture: StationPicture) -> None:
-        """Take a newer summary; those of machines that are silent are void with it."""
+        """Use a newer summary, and drop those of silent machines of the same name."""
         with self._lock:
             before = self._pictures.get(picture.station, {})
             received_ns = picture.received_monotonic_ns or 0
@@ -92,6 +92,6 @@ class LivePicture:
             self._pictures[picture.station] = others | {picture.summary.epoch: picture}
 
     def all(self) -> dict[str, Sequence[StationPicture]]:
-        """Pictures by station; more than one where several machines have its name."""
+        """Pictures by station; more than one if several machines use its name."""
         with self._lock:
             return {name: tuple(ones.values()) for name, ones in self._pictures.items()}

@@ -117,7 +117,7 @@ def _problems(
 
 
 def _open_database(config: DepartmentServerConfig, folder: DataFolder) -> Database:
-    """Raises StoreError."""
+    """Open the database.  Raises StoreError."""
     server = config.database_server
     require_noted_server(folder.database, server)
     if server is None:
@@ -128,7 +128,7 @@ def _open_database(config: DepartmentServerConfig, folder: DataFolder) -> Databa
 
 
 def _enrolled(pki: PkiFolder) -> list[str]:
-    """Stations that may report; none are known where the bus is not secured."""
+    """Stations that may report; none are known if the bus is not secured."""
     try:
         entries = pki.registry().entries
     except MusterError:

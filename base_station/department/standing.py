@@ -1,7 +1,7 @@
-"""Alarms and incidents of the department's tables as they stand, kept in memory.
+"""Present alarms and incidents from the department's tables, kept in memory.
 
-They are read again by a thread of its own after events came.  So no request waits for the
-database, and while that is away what was read last is shown.
+A thread of its own reads them again after events came.  So no request waits for the database; while
+that cannot be reached, the last reading is shown.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _CLOSE_S = 20.0  # a server that does not answer is given up before
 
 
 class Standing(NamedTuple):
-    """Reports of stations, as of one reading."""
+    """Reports of stations according to one reading."""
 
     alarms: Sequence[ReportedAlarm]  # that are not resolved, the gravest and newest
     open_alarms: int  # all of them
@@ -29,7 +29,7 @@ class Standing(NamedTuple):
 
 
 class StandingReports:
-    """``wake`` it when events were stored; ``start`` once."""
+    """Reader of the reports; ``start`` once, and ``wake`` when events were stored."""
 
     def __init__(self, tables: DepartmentTables) -> None:
         """Raises StoreError."""
@@ -47,14 +47,14 @@ class StandingReports:
         self._reading.start()
 
     def wake(self) -> None:
-        """From any thread."""
+        """Ask for a new reading.  Thread-safe."""
         self._reading.wake()
 
     def close(self) -> None:
         self._reading.close(_CLOSE_S)
 
     def read(self) -> None:
-        """Raises StoreError, and then what was read before stays."""
+        """Read the tables.  Raises StoreError; then the last reading stays."""
         alarms, open_alarms = self._tables.open_alarms(_ALARMS_SHOWN)
         incidents, missing = self._tables.incidents(_INCIDENTS_SHOWN), self._tables.missing()
         self._current = Standing(alarms, open_alarms, incidents, missing)

@@ -1,4 +1,4 @@
-"""Makes the answers of the department's API from the live picture and the tables."""
+"""Answers of the department's API, made from the live picture and the tables."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ class PeopleQuery(NamedTuple):
 
 
 class DepartmentViews:
-    """Thread-safe.  What changes by itself comes from memory, also while the database is away."""
+    """Maker of the answers.  Thread-safe.  What changes by itself comes from memory, also while the
+    database cannot be reached.
+    """
 
     def __init__(
         self,
@@ -69,7 +71,9 @@ class DepartmentViews:
         *,
         has_archive: bool,
     ) -> None:
-        """``enrolled``: stations with a certificate; ``problems``: of the department itself."""
+        """``enrolled``: stations with a certificate; ``problems``: problems of the department
+        itself.
+        """
         self.has_archive = has_archive
         self._picture, self._tables, self._intake = picture, tables, intake
         self._standing = standing
@@ -117,7 +121,7 @@ class DepartmentViews:
         )
 
     def events(self, before: int | None, limit: int) -> tuple[DepartmentEventView, ...]:
-        """In the order of arrival, the newest first.  Raises StoreError."""
+        """Events in the order of arrival, newest first.  Raises StoreError."""
         return tuple(
             DepartmentEventView(
                 number=row.number,
@@ -287,7 +291,7 @@ class DepartmentViews:
 def _ranked(
     picture: StationPicture, people: Iterable[PersonSummary]
 ) -> Iterator[tuple[tuple[object, ...], StationPicture, PersonSummary]]:
-    """With what they are sorted by."""
+    """People with the keys by which they are sorted."""
     for person in people:
         rank = rank_of(person, picture.summary.t_ms)
         yield (*rank[:-1], picture.station, rank[-1]), picture, person
@@ -296,7 +300,7 @@ def _ranked(
 def _not_stored(
     stored: Iterable[ReportedIncident], pictures: Mapping[str, Sequence[StationPicture]]
 ) -> Iterator[ReportedIncident]:
-    """Open incidents of summaries whose events wait for the database."""
+    """Open incidents from summaries whose events are not in the database yet."""
     known = {(one.station, one.incident_id) for one in stored}
     for station, ones in pictures.items():
         for picture in ones:

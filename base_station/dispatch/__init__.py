@@ -1,1 +1,1 @@
-"""In from dispatch: incidents (EIDO or plain JSON) and alerts (CAP) of other systems.  Pure."""
+"""Reports of the dispatch centre: incidents (EIDO or plain JSON) and alerts (CAP). Pure."""

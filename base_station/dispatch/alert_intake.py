@@ -1,4 +1,4 @@
-"""Intake of alerts: puts them on the plan, and takes off those that later alerts replace."""
+"""Intake of alerts: adds them to the plan, and removes those that later alerts replace."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ Deliver = Callable[[tuple[ExternalMarker, ...], tuple[str, ...]], None]
 
 
 class AlertIntake:
-    """For requests of any thread."""
+    """Intake.  Thread-safe."""
 
     def __init__(self, deliver: Deliver) -> None:
-        """``deliver``: takes markers, and the ids of those that are gone."""
+        """``deliver`` receives markers, and the ids of removed ones."""
         self._deliver = deliver
         self._replaced: dict[str, None] = {}  # oldest first
         self._lock = Lock()
 
     def take(self, alert: CapAlert) -> CapAlert:
-        """Gives the alert with its outcome: one that comes behind its own update or cancellation is
-        not shown.
+        """Read an alert, and return it with its outcome.  One that comes after its own update or
+        cancellation is not shown.
         """
         with self._lock:
             if alert.alert_id in self._replaced:

@@ -1,4 +1,4 @@
-"""Call signs of vehicles and crews: in words, and matched with crews and units that are known."""
+"""Call signs of vehicles and crews: in words, and matched with known crews and units."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class KnownUnit(msgspec.Struct, frozen=True):
 
 
 class MatchedCallSign(msgspec.Struct, frozen=True):
-    """Meaning of a call sign at the station: a crew, or wearables, or nothing."""
+    """Crew or wearables at the station for which a call sign stands, or none."""
 
     call_sign: str
     words: str  # "Engine 12" for E12
@@ -54,10 +54,10 @@ class MatchedCallSign(msgspec.Struct, frozen=True):
 
 
 class CallSigns:
-    """Reads call signs by the letters of a department."""
+    """Reader of call signs by the letters of a department."""
 
     def __init__(self, words: Mapping[str, str]) -> None:
-        """``words``: of the settings, by letters; they come before the usual ones."""
+        """``words``: words of the settings by letters; they have priority over the usual ones."""
         self._words = {letters.casefold(): word for letters, word in USUAL_WORDS.items()}
         self._words |= {letters.casefold(): word for letters, word in words.items()}
 
@@ -70,7 +70,9 @@ class CallSigns:
     def matched(
         self, call_signs: Iterable[str], crews: Iterable[str], units: Iterable[KnownUnit]
     ) -> tuple[MatchedCallSign, ...]:
-        """Each call sign with the crew and the wearables of the same name, however written."""
+        """Each call sign with the crew and the wearables of the same name, however it is
+        written.
+        """
         crew_by_key = {self._key(crew): crew for crew in crews}
         ids_by_key: dict[tuple[str, ...], set[str]] = {}
         for unit in units:
@@ -88,7 +90,7 @@ class CallSigns:
         )
 
     def _key(self, name: str) -> tuple[str, ...]:
-        """E12, E-12, Eng. 012 and Engine 12 have the same; empty: it names nothing."""
+        """Key that E12, E-12, Eng.  012 and Engine 12 have in common; empty if it names nothing."""
         parts = [part.casefold() for part in _PART.findall(name)]
         in_full = [self._words.get(part, part).casefold() for part in parts]
         return tuple(part.lstrip("0") or part for word in in_full for part in word.split())

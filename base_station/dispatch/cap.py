@@ -49,7 +49,7 @@ def marker_ids(alert_id: str) -> tuple[str, ...]:
 
 
 def read_alert(body: bytes, now_ns: int) -> CapAlert:
-    """``now_ns``: station time (UTC).  Raises WireError where it is no alert."""
+    """Read an alert.  ``now_ns``: station time (UTC). Raises WireError if it is none."""
     try:
         alert = fromstring(body, forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError, LookupError) as error:
@@ -130,7 +130,7 @@ class _AlertReader:
             yield f"{sender},{rest.partition(',')[0]}"
 
     def _info(self) -> ET.Element | None:
-        """The English part of an alert, else its first one."""
+        """English part of an alert, otherwise its first one."""
         infos = list(_children(self._alert, "info"))
         english = (one for one in infos if _text(one, "language").lower().startswith("en"))
         return next(english, infos[0] if infos else None)
@@ -230,7 +230,7 @@ class _AlertReader:
 
 
 def _numbers(text: str) -> list[tuple[float, float]]:
-    """Pairs ``lat,lon``; empty where one is none."""
+    """Pairs ``lat,lon``; empty if any of them is invalid."""
     pairs = []
     for pair in text.split():
         lat, comma, lon = pair.partition(",")
@@ -260,6 +260,6 @@ def _children(parent: ET.Element, name: str) -> Iterator[ET.Element]:
 
 
 def _text(parent: ET.Element, name: str) -> str:
-    """Text of the first child of that name, in one line; empty: there is none."""
+    """Text of the first child of that name, in one line; empty if there is none."""
     child = next(_children(parent, name), None)
     return "" if child is None else plain(child.text or "")

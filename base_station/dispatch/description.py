@@ -1,4 +1,4 @@
-"""A dispatch in the words of the console, of reports and of exports."""
+"""Texts about a dispatch for the console, reports and exports."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def incident_name(report: NoteDispatch) -> str:
 
 
 def description(report: NoteDispatch) -> str:
-    """All that a reader of tracks or of a report wants to know of it, in one line."""
+    """Summary of a report in one line, for readers of tracks and reports."""
     code = f" ({report.type_code})" if report.type_code not in {"", report.type} else ""
     place = ""
     if report.lat_deg is not None and report.lon_deg is not None:

@@ -1,8 +1,8 @@
 """Emergency Incident Data Objects of NENA (NENA-STA-021.1, in JSON).
 
-Versions write names in other cases, and one component or a list of them: both are read.  People,
-vehicles and calls of an EIDO are not taken, but for the time of the first call: the station has no
-use for the names and numbers of callers.
+Versions write names in different cases, and one component or a list of them: both are read.  Of the
+people, vehicles and calls of an EIDO only the time of the first call is used: the station does not
+need the names and numbers of callers.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def is_eido(body: Mapping[str, Any]) -> bool:
 
 
 def read_eido(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
-    """Raises WireError where it names no incident."""
+    """Read an EIDO. Raises WireError if it names no incident."""
     eido = _lower(body)
     incident = next(iter(_components(eido, "incidentComponent")), {})
     tracking_id = eido.get("incidenttrackingidentifier") or eido.get("$id")
@@ -71,7 +71,7 @@ def read_eido(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
 def _place(
     eido: Component, incident: Component, parts: ReportParts
 ) -> tuple[str, float | None, float | None]:
-    """Address and position of the first locations that have them, the incident's own first."""
+    """Address and position from the first locations that have them, the incident's own first."""
     locations = [
         *_components(eido, "locationComponent"),
         *_components(eido, "locationInformationComponent"),

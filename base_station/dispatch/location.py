@@ -21,14 +21,14 @@ _WGS_84 = re.compile(r"(4326|4979)$")
 
 
 class Location(msgspec.Struct, frozen=True):
-    """Place of an incident, as far as it is known."""
+    """Location of an incident, as far as it is known."""
 
     address: str = ""
     position_deg: tuple[float, float] | None = None  # latitude, longitude (WGS-84)
 
 
 def read_location(xml: str, parts: ReportParts, name: str) -> Location:
-    """An empty location, with a warning, where it cannot be read."""
+    """Read a location; if it cannot be read, return an empty one and add a warning."""
     try:
         presence = fromstring(xml.strip(), forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError, LookupError) as error:
@@ -60,7 +60,9 @@ def _address(presence: ET.Element) -> str:
 def _position_deg(
     presence: ET.Element, parts: ReportParts, name: str
 ) -> tuple[float, float] | None:
-    """The first position of a point, circle or ellipsoid; the middle of a polygon's corners."""
+    """Latitude and longitude of the first point, circle or ellipsoid; for a polygon the middle of
+    its corners.
+    """
     for shape in presence.iter():
         system = shape.get("srsName")
         if system is not None and not _WGS_84.search(system):

@@ -1,4 +1,4 @@
-"""A dispatch as plain JSON, for own senders (docs/howto/take-dispatches.md)."""
+"""Dispatch as plain JSON, for senders of one's own (docs/howto/take-dispatches.md)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FIELDS = frozenset(
 
 
 def read_plain(body: Mapping[str, Any], parts: ReportParts) -> NoteDispatch:
-    """Raises WireError where it has no number."""
+    """Read a plain report.  Raises WireError if it has no number."""
     number = parts.number(body.get("number"), '"number"')
     unknown = sorted(name for name in body if name not in _FIELDS)
     if unknown:

@@ -1,4 +1,4 @@
-"""Reads a report of the dispatch centre, in whichever of the formats it comes."""
+"""Reading of a report of the dispatch centre, in any of the formats."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _CAMEL_CASE = re.compile(r"(?<=[a-z])(?=[A-Z])|_")
 
 
 def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatch:
-    """A report as it is logged: its type in words; a report that does not tell when it was changed
-    was changed now (``now_ns``: station time, UTC).
+    """Read a report as it will be logged, with its type in words.  A report without a time of
+    change is taken for changed now (``now_ns``: station time, UTC).
 
-    Raises WireError with a sentence where it is no JSON object or has no number.
+    Raises WireError with a sentence if it is no JSON object or has no number.
     """
     try:
         content = msgspec.json.decode(body)
@@ -52,6 +52,8 @@ def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatc
 
 
 def type_in_words(report: NoteDispatch, config: DispatchConfig) -> str:
-    """By the settings, else as the report has it, else its code, split into words."""
+    """Type of a dispatch in words: from the settings, otherwise from the report, otherwise its
+    code, split into words.
+    """
     words = config.types.get(report.type_code) or report.type
     return words or _CAMEL_CASE.sub(" ", report.type_code).capitalize()

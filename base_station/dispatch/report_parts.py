@@ -1,6 +1,6 @@
-"""Parts of a report, checked: unusable ones are left out, each with a warning.
+"""Parts of a report, checked: invalid ones are left out, each with a warning.
 
-A dispatch with a wrong time is still a fire: only a report without a number is refused.
+A dispatch with a wrong time is still a fire, so only a report without a number is refused.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _LAST = datetime(2200, 1, 1, tzinfo=UTC)
 
 
 class ReportParts:
-    """Gives the parts of one report, and collects the warnings."""
+    """Reader of the parts of one report, which collects the warnings."""
 
     def __init__(self, now_ns: int) -> None:
         """``now_ns``: station time (UTC)."""
@@ -51,7 +51,7 @@ class ReportParts:
         self._warnings[warning] = None
 
     def number(self, value: Any, name: str) -> str:
-        """Number of the dispatch.  Raises WireError where there is none."""
+        """Number of the dispatch.  Raises WireError if there is none."""
         text = plain(str(value)) if _is_text(value) else ""
         if not 0 < len(text) <= NUMBER_CHARACTERS:
             raise WireError(
@@ -84,7 +84,7 @@ class ReportParts:
         return text[:longest]
 
     def call_signs(self, values: Iterable[Any], name: str) -> tuple[str, ...]:
-        """Each once, in their order."""
+        """Call signs in their order, each once."""
         found: dict[str, None] = {}
         for value in values:
             text = self.text(value, name, CALL_SIGN_CHARACTERS)
@@ -102,7 +102,7 @@ class ReportParts:
         return tuple(found)[:MOST_UNITS]
 
     def time_ns(self, value: Any, name: str) -> int:
-        """UTC in nanoseconds since 1970, to the millisecond; 0: unknown."""
+        """UTC in nanoseconds since 1970, to the millisecond; 0 if unknown."""
         if value is None or value == "":
             return 0
         try:
@@ -179,7 +179,7 @@ class ReportParts:
 
 
 def plain(text: str) -> str:
-    """Text in one line, without characters that cannot be seen."""
+    """Text in one line, without invisible characters."""
     return " ".join("".join(one if one.isprintable() else " " for one in text).split())
 
 

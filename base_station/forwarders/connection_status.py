@@ -10,10 +10,10 @@ logger = logging.getLogger(__name__)
 
 
 class ConnectionStatus:
-    """Written by the forwarder's thread alone, read by any."""
+    """State that the forwarder's thread alone writes and any thread reads."""
 
     def __init__(self, name: str, clock: Clock) -> None:
-        """``name``: of the connection, for the log."""
+        """``name`` of the connection, for the log."""
         self._name, self._clock = name, clock
         self._away_since_ns: int | None = clock.monotonic_ns()  # None: connected, or not to be
         self.state = "connecting"
@@ -23,12 +23,14 @@ class ConnectionStatus:
 
     @property
     def away_s(self) -> float:
-        """For so long it has been trying to connect; 0: it is connected, or is not to be."""
+        """Seconds for which it has been trying to connect; 0 if it is connected, or is not to
+        be.
+        """
         since_ns = self._away_since_ns
         return 0.0 if since_ns is None else (self._clock.monotonic_ns() - since_ns) / NS_PER_S
 
     def set(self, state: str, reason: str = "") -> None:
-        """``state``: connecting, connected or standby; ``reason``: as a phrase for a person."""
+        """Set the state: connecting, connected or standby.  ``reason``: a phrase for a person."""
         if state != self.state:
             self.state, self.since_ns = state, self._clock.utc_ns()
             logger.info("%s: %s %s", self._name, state, reason)

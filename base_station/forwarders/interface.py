@@ -1,7 +1,7 @@
 """Interface of a forwarder: a live connection with another system of the incident.
 
-A forwarder gets the snapshots and deltas of consoles, in the engine's thread, and returns at once;
-a thread of its own does the rest.
+A forwarder receives the snapshots and deltas of consoles in the engine's thread, and must return at
+once; a thread of its own does the rest.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from shared.messages import ExternalMarker
 
 
 class Forwarder(Protocol):
-    """One configured connection; ``start`` once, ``close`` once."""
+    """One configured connection; ``start`` and ``close`` are called once."""
 
     def delta(self, delta: Delta) -> None:
-        """Take changes; in the engine's thread."""
+        """Receive changes, in the engine's thread."""
         ...
 
     def reset(self, snapshot: Snapshot) -> None:
-        """Take the whole picture, which replaces the former one; in the engine's thread."""
+        """Receive the whole picture, which replaces the former one, in the engine's thread."""
         ...
 
     def project(self, projection: Projection) -> None:
-        """Take decisions, which are in the log; in the engine's thread.  After a kill those since
+        """Receive decisions that are in the log, in the engine's thread.  After a kill those since
         the last checkpoint come again.
         """
         ...
@@ -44,7 +44,7 @@ class Forwarder(Protocol):
         ...
 
     def problem(self) -> str:
-        """Sentence for an alarm: the other system is away for long; empty: it is not."""
+        """Sentence for an alarm if the other system cannot be reached for long; otherwise empty."""
         ...
 
 

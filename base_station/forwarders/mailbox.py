@@ -1,7 +1,7 @@
 """Mailbox between the engine's thread and the thread of a forwarder.
 
-It keeps the newest of each unit and alarm, so that its size is bounded by their number, however
-long it is not emptied.
+It keeps only the newest state of each unit and alarm, so its size is bounded by their number,
+however long it is not emptied.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from base_station.views.wire import AlarmView, Delta, HealthView, Snapshot, Unit
 
 @dataclass(slots=True)
 class Changes:
-    """Everything since the last call, the picture first."""
+    """Changes since the last call, the picture first."""
 
     picture: Snapshot | None = None  # everything before it is void
     units: dict[str, UnitView] = field(default_factory=dict)
@@ -23,7 +23,7 @@ class Changes:
 
 
 class Mailbox:
-    """Put in by one thread and emptied by another."""
+    """Mailbox that one thread fills and another one empties."""
 
     def __init__(self) -> None:
         self._lock = Lock()

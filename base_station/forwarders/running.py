@@ -48,10 +48,10 @@ class Forwarders:
         return tuple(forwarder.view() for forwarder in self._forwarders)
 
     def changes(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """Reports of connections that have been away for long, and that are there again.
+        """Reports of connections that have been away for long, and of those that are back.
 
-        ``known``: the problems that stand reported, by part; those of a connection that an earlier
-        run had end too.
+        ``known``: problems that stand reported, by part; those of a connection that an earlier run
+        had end too.
         """
         now = {f"{_PART}{one.view().name}": one.problem() for one in self._forwarders}
         for part, text in now.items():
@@ -63,7 +63,7 @@ class Forwarders:
 
 
 def make_forwarders(tables: Mapping[str, Mapping[str, Any]], around: Surroundings) -> Forwarders:
-    """``tables``: the settings of each kind, by table and name."""
+    """Create the forwarders.  ``tables``: settings of each kind, by table and name."""
     return Forwarders(
         [
             kind.make(name, settings, around)

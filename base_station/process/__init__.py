@@ -1,1 +1,1 @@
-"""The station as a program that runs for days: its interpreter, its threads, its troubles."""
+"""The station as a long-running process: its interpreter, its threads and their failures."""

@@ -1,15 +1,15 @@
-"""Python's interpreter, set for a station.
+"""Settings of Python's interpreter for a station.
 
-Its collector of cycles is set for a program that holds much and makes hardly a cycle.  By default
-it looks at all live objects again and again: a tenth of the drive's time, in pauses of a tenth of a
-second in which no message is received or sent.
+The collector of cycles is set for a program that holds many objects and makes hardly a cycle.  By
+default it examines all live objects again and again: a tenth of the engine's time, in pauses of a
+tenth of a second in which no message is received or sent.
 
-Its threads take turns ten times as often as by default.  A message from the bus to a console passes
-three threads that need the interpreter for a moment only, and each would wait for five milliseconds
-while the drive has much to do.
+Threads switch ten times as often as by default.  A message from the bus to a console passes three
+threads that need the interpreter for a moment only, and each would wait for five milliseconds while
+the engine has much to do.
 
-Large blocks, such as a saved state, have memory of their own: small blocks would else fill a part
-of it, and leave holes that nothing fits into, so that the station's memory would grow.
+Large blocks, such as a saved state, have memory of their own.  Otherwise small blocks would fill a
+part of it and leave holes that nothing fits into, so that the station's memory would grow.
 """
 
 from __future__ import annotations
@@ -43,14 +43,16 @@ def paused() -> Iterator[None]:
 
 
 def configure() -> None:
-    """Call it when the program begins."""
+    """Set the interpreter; to be called when the program begins."""
     gc.set_threshold(_NEW_OBJECTS, _YOUNG, _OLD)
     sys.setswitchinterval(_TURN_S)
     _have_own_blocks(_LARGE_BYTES)
 
 
 def return_free_memory() -> None:
-    """For a program of large arrays that come and go, whose memory is bounded."""
+    """Give the memory of large blocks back to the system as soon as it is free; for a program of
+    large arrays that come and go.
+    """
     _have_own_blocks(_GIVEN_BACK_BYTES)
 
 
@@ -61,11 +63,15 @@ def _have_own_blocks(large_bytes: int) -> None:
 
 
 def freeze() -> None:
-    """Call it when the program is set up: present objects stay, and are not looked at again."""
+    """Exclude present objects from collection, as they stay; to be called when the program is set
+    up.
+    """
     gc.collect()
     gc.freeze()
 
 
 def unfreeze() -> None:
-    """Call it when the program is to be set up anew: its objects may go."""
+    """Include them again; to be called when the program is to be set up anew, as its objects may
+    go.
+    """
     gc.unfreeze()

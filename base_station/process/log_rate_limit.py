@@ -10,7 +10,9 @@ APART_NS = 60 * NS_PER_S
 
 
 class RateLimitFilter(logging.Filter):
-    """For the logger of a library that warns of every wrong request with few sentences."""
+    """Filter for the logger of a library that logs every wrong request, with few different
+    sentences.
+    """
 
     def __init__(self, clock: Clock) -> None:
         super().__init__()

@@ -7,7 +7,9 @@ import resource
 
 
 def allow_many_files() -> None:
-    """As many as the machine allows: connections must not take them from the log."""
+    """Raise the limit to what the machine allows, so that connections leave enough files for the
+    log.
+    """
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     with contextlib.suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))

@@ -1,7 +1,7 @@
-"""Ends a station that was asked to end and whose disk does not answer.
+"""Watchdog that ends a station which was asked to end and whose disk does not answer.
 
-A thread that waits for such a disk in the kernel can be neither woken nor left behind: each part of
-the station would have to look out for it.  At most as much is lost as by a kill.
+A thread that waits for such a disk in the kernel can neither be woken nor left behind, so each part
+of the station would have to handle that.  No more is lost by this than by a kill.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _POLL_INTERVAL_S = 0.5
 
 
 class ShutdownWatchdog:
-    """Leave it when all has ended in order."""
+    """Watchdog; its context is left when all has ended in order."""
 
     def __init__(self) -> None:
         self._is_over = Event()
@@ -33,10 +33,10 @@ class ShutdownWatchdog:
         self._is_over.set()
 
     def begin(self, unsaved_loss: Callable[[], str], end_children: Callable[[], None]) -> None:
-        """From any thread, more than once too.
+        """Begin to watch.  Thread-safe; may be called more than once.
 
-        ``unsaved_loss``: records missing on a disk that hangs, as a sentence for a person; empty:
-        the disk answers.  ``end_children`` ends processes that would outlive this program.
+        ``unsaved_loss``: sentence about records that are lost on a disk that hangs; empty if it
+        answers.  ``end_children`` ends processes that would outlive this program.
         """
         with self._lock:
             if self._has_begun:

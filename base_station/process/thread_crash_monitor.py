@@ -1,4 +1,4 @@
-"""A part of the station that a bug of the program has ended: it is reported to people."""
+"""Monitor of threads that a bug has ended: they are reported to people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ log = logging.getLogger(__name__)
 
 
 class ThreadCrashMonitor:
-    """Watches this process's threads while it is entered; the others go on without the one."""
+    """Monitor of this process's threads while it is entered; the other threads continue."""
 
     def __init__(self) -> None:
         self._names: list[str] = []

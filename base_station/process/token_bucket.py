@@ -1,4 +1,4 @@
-"""Token bucket: an allowance that fills at a rate."""
+"""Token bucket: an allowance that fills at a rate (algorithm of the same name)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from shared.clock import NS_PER_S
 
 
 class TokenBucket:
-    """Fills at a rate, up to a burst; more than its content cannot be taken."""
+    """Bucket that fills at a rate, up to a burst."""
 
     __slots__ = ("_burst", "_filled_ns", "_left", "_per_s")
 
@@ -24,12 +24,12 @@ class TokenBucket:
         return True
 
     def spend(self, amount: float, now_ns: int) -> None:
-        """Take tokens for work already done; more than there are become a debt."""
+        """Take tokens for work already done; more than the content becomes a debt."""
         self._fill(now_ns)
         self._left -= amount
 
     def wait_s(self, now_ns: int) -> float:
-        """Until anything is left again; 0: there is."""
+        """Seconds until there are tokens again; 0 if there are."""
         self._fill(now_ns)
         return max(0.0, -self._left / self._per_s)
 

@@ -1,4 +1,4 @@
-"""Collects reports: events into the outbox, and all else into summaries."""
+"""Collects reports for the department: events into the outbox, all else into summaries."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ _NOTE_EVERY_NS = 10 * NS_PER_S  # up to where the log is collected, where nothin
 
 
 class ReportCollector:
-    """``delta``, ``reset`` and ``project`` in the engine's thread, all else in one other."""
+    """``delta``, ``reset`` and ``project`` are called in the engine's thread, all else in one other
+    thread.
+    """
 
     def __init__(self, outbox: DepartmentOutbox, people: PersonLookup, read_log: ReadLog) -> None:
         self._outbox = outbox
@@ -66,9 +68,9 @@ class ReportCollector:
     # ---- in the collecting thread
 
     def collect(self, now_ms: int) -> bool:
-        """Bring new events into the outbox; True where there are any.  ``now_ms``: station time.
+        """Put new events into the outbox.  True if there were any.  ``now_ms``: station time.
 
-        Raises StoreError or LogError: the next call does the same again.
+        Raises StoreError or LogError; the next call then does the same again.
         """
         self._take_picture()
         if not self._has_picture:
@@ -88,7 +90,7 @@ class ReportCollector:
         return bool(alarms or found.events)
 
     def summary(self, now_ms: int, console_url: str) -> Summary | None:
-        """None: the station's own state is not known yet."""
+        """Return the summary; None while the station's own state is not known yet."""
         if not self._has_picture:
             return None
         open_incidents = [one for one in self._incidents if one.closed_ms is None]
@@ -132,7 +134,7 @@ class ReportCollector:
         )
 
     def _alarms_of_log(self) -> list[NewEvent]:
-        """Alarms that were decided and not collected before the station ended."""
+        """Alarm transitions that were decided but not collected before the station ended."""
         collected_ns = self._outbox.collected_ns
         if collected_ns is None:
             opened_ms = min((one.opened_ms for one in self._incidents), default=None)

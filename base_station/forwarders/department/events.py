@@ -1,7 +1,7 @@
-"""Events for the department: transitions of alarms, and differences to the last reports.
+"""Events for the department: transitions of alarms, and changes since the last reports.
 
-An event's id follows from its content: the same one from both machines of two stations, and from
-one that reports it again after a kill.
+An event's id follows from its content, so that both machines of two stations, and a station that
+reports it again after a kill, give it the same id.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def differences(
     is_forgotten: Callable[[str], bool],
     now_ms: int,
 ) -> Differences:
-    """Differences to the state that was ``reported`` last, by subject."""
+    """Changes since the state that was ``reported`` last, by subject."""
     found = Differences()
     shown = {f"{_INCIDENT}{one.incident_id}": _incident_event(one) for one in incidents}
     for subject, event in shown.items():
@@ -97,7 +97,7 @@ def differences(
 
 
 def forgotten_body(subject: str) -> bytes:
-    """Body of all events of a person who was forgotten."""
+    """Body that replaces those of all events about an erased person."""
     return pack(PersonEvent(subject.removeprefix(_PERSON), "", "", ""))
 
 

@@ -1,4 +1,4 @@
-"""Forwarder to the department: publishes summaries, and hands events over until they are stored."""
+"""Forwarder to the department: publishes summaries, and sends events until they are stored."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ _OTHER_STATION = coded("department-other-station", "it answers another station")
 
 
 class DepartmentForwarder:
-    """A ``Forwarder`` for ``[department]``."""
+    """``Forwarder`` for ``[department]``."""
 
     def __init__(self, name: str, config: DepartmentConfig, surroundings: Surroundings) -> None:
-        """Raises ConfigError where the enrolment cannot be used."""
+        """Raises ConfigError if the enrolment cannot be used."""
         self._name, self._config = name, config
         self._clock, self._leads = surroundings.clock, surroundings.leads
         self._enrolment = _station_enrolment(config.enrolment)
@@ -141,7 +141,7 @@ class DepartmentForwarder:
     # ---- in the sending thread
 
     def _send(self) -> float:
-        """Hand over a batch; gives the pause until the next one."""
+        """Send a batch, and return the pause until the next one."""
         assert self._bus is not None
         if not self._leads():
             self._status.set("standby")
@@ -169,8 +169,8 @@ class DepartmentForwarder:
         return 0.0
 
     def _send_batch(self, bus: Bus, batch: tuple[StoredEvent, ...]) -> EventReceipt | None:
-        """None: no receipt came in time; the department may have stored the events all the same,
-        and stores none twice.
+        """Send a batch, and return its receipt.  None if none came in time; the department may have
+        stored the events nevertheless, and does not store them twice.
         """
         message = EventBatch(
             epoch=self._outbox.epoch,
@@ -207,7 +207,7 @@ class DepartmentForwarder:
 
 
 def _station_enrolment(path: Path) -> Enrolment:
-    """Raises ConfigError where it cannot be read, or is of something else."""
+    """Read the enrolment.  Raises ConfigError if it cannot be read, or is of another kind."""
     enrolment = read_enrolment(path)
     if enrolment.holder is not Holder.DEPARTMENT_STATION:
         raise ConfigError(

@@ -1,7 +1,7 @@
 """Outbox of a station: events for its department, in a file of its own in the data folder.
 
-An event has a number from here and is kept until the department has acknowledged it.  The file
-also has the last report on each subject, and the place up to which the log was collected, so that a
+An event gets a number here and is kept until the department has acknowledged it.  The file also has
+the last report on each subject, and the position up to which the log was collected, so that a
 station that was killed reports the changes since.
 """
 
@@ -53,10 +53,10 @@ class StoredEvent(NamedTuple):
 
 
 class DepartmentOutbox:
-    """Thread-safe.  The file is opened when it is first used, and a damaged one is set aside as
-    ``NAME.damaged``: everything is reported anew then.
+    """Outbox in a file.  Thread-safe.  The file is opened when it is first used.  A damaged one is
+    set aside as ``NAME.damaged``, and everything is then reported again.
 
-    Raises StoreError throughout where the disk does not take or give it.
+    All methods raise StoreError if the disk fails.
     """
 
     def __init__(self, path: Path) -> None:
@@ -66,7 +66,7 @@ class DepartmentOutbox:
 
     @property
     def epoch(self) -> int:
-        """Number of this outbox; another one is another machine, or begins anew."""
+        """Random number of this outbox; another number means another machine or a new outbox."""
         epoch = self._meta(_EPOCH)
         assert epoch is not None
         return epoch
@@ -77,7 +77,7 @@ class DepartmentOutbox:
 
     @property
     def dropped_seq(self) -> int:
-        """The last number that ``keep_newest`` has dropped; 0: none."""
+        """Last number that ``keep_newest`` has dropped; 0 if none."""
         return self._meta(_DROPPED) or 0
 
     @property
@@ -87,7 +87,7 @@ class DepartmentOutbox:
 
     @property
     def waiting(self) -> int:
-        """Events that are not acknowledged."""
+        """Number of events that are not acknowledged."""
         with self._transaction() as database:
             ((count,),) = database.execute("SELECT count(*) FROM events")
         return int(count)
@@ -103,8 +103,8 @@ class DepartmentOutbox:
         reported: Mapping[str, bytes | None],
         collected_ns: int | None,
     ) -> None:
-        """Keep events with the reports of their subjects, together or not at all; an event that is
-        there stays as it is.  ``reported``: None removes a subject.
+        """Store events with the reports of their subjects, together or not at all; an event that is
+        there already stays as it is.  ``reported``: None removes a subject.
         """
         with self._transaction() as database:
             # An event that SQLite ignores because of its id would use up a number.
@@ -125,12 +125,14 @@ class DepartmentOutbox:
                 database.execute("REPLACE INTO meta VALUES (?, ?)", (_COLLECTED, collected_ns))
 
     def rewrite(self, subject: str, body: bytes) -> None:
-        """Give all waiting events of a subject this body, so that nothing is left of theirs."""
+        """Replace the bodies of all waiting events of a subject, so that nothing of them is
+        left.
+        """
         with self._transaction() as database:
             database.execute("UPDATE events SET body = ? WHERE subject = ?", (body, subject))
 
     def next_batch(self, max_events: int, max_bytes: int) -> tuple[StoredEvent, ...]:
-        """The oldest events that wait; one at least where there is one."""
+        """Oldest waiting events; at least one if there is one."""
         batch: list[StoredEvent] = []
         size_bytes = 0
         with self._transaction() as database:
@@ -146,7 +148,7 @@ class DepartmentOutbox:
         return tuple(batch)
 
     def acknowledge(self, seq: int) -> None:
-        """The department has all events up to ``seq`` on its disk."""
+        """Note that the department has all events up to ``seq`` on its disk."""
         with self._transaction() as database:
             _delete(database, seq, _ACKNOWLEDGED)
 
@@ -213,7 +215,7 @@ def _delete(database: sqlite3.Connection, seq: int, reason: str) -> None:
 
 
 def _roll_back(database: sqlite3.Connection) -> None:
-    """The failure that led here is the one to be reported, not one of the rollback."""
+    """Roll back, without hiding the failure that led here by one of the rollback."""
     with suppress(sqlite3.Error):
         database.execute("ROLLBACK")
 

@@ -1,4 +1,4 @@
-"""Summary of the picture on a station's consoles."""
+"""Summary of the picture that a station's consoles show."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def incident_summary(incident: IncidentView) -> IncidentSummary:
 
 
 def person_summary(unit: UnitView, incident_id: str) -> PersonSummary:
-    """``incident_id``: of the incident in which its wearer is; empty: in none."""
+    """Summary of one person.  ``incident_id``: the wearer's incident; empty if in none."""
     status, duty = unit.status, unit.duty
     return PersonSummary(
         unit_id=unit.unit_id,

@@ -33,13 +33,13 @@ class ConnectionLostError(Exception):
 
 
 class TakConnection:
-    """Open connection of either kind."""
+    """Open connection to a server or a group."""
 
     def __init__(self, reader: Any, writer: Any) -> None:
         self._reader, self._writer = reader, writer
 
     async def send(self, events: Sequence[bytes]) -> None:
-        """Raises ConnectionLostError where the other end does not take them."""
+        """Send events.  Raises ConnectionLostError if the other end does not take them."""
         if hasattr(self._writer, "drain"):
             self._writer.write(b"".join(events))
             await _within(self._writer.drain(), _DRAIN_S, _STALLED)
@@ -49,7 +49,9 @@ class TakConnection:
                 await _within(self._writer.send(event), _DRAIN_S, _STALLED)
 
     async def receive(self) -> bytes:
-        """Received bytes, at most a datagram or ``_READ_BYTES``; raises ConnectionLostError."""
+        """Return received bytes, at most a datagram or ``_READ_BYTES``. Raises
+        ConnectionLostError.
+        """
         try:
             if hasattr(self._reader, "recv"):
                 data, _ = await self._reader.recv()
@@ -66,7 +68,7 @@ class TakConnection:
         return bytes(data)
 
     def close(self) -> None:
-        """End it at once: nothing that waits is worth waiting for."""
+        """Close at once; nothing that still waits needs to be sent."""
         for end in (self._writer, self._reader):
             transport = getattr(end, "transport", None)
             if transport is not None:
@@ -76,7 +78,7 @@ class TakConnection:
 
 
 def in_batches(events: Iterable[bytes]) -> Iterator[list[bytes]]:
-    """Events that are sent by one call; each is asked for when it is its turn."""
+    """Group events for one call each; an event is requested only when its batch is made."""
     batch: list[bytes] = []
     size = 0
     for event in events:
@@ -90,7 +92,7 @@ def in_batches(events: Iterable[bytes]) -> Iterator[list[bytes]]:
 
 
 async def open_connection(config: TakConfig) -> TakConnection:
-    """Raises ConnectionLostError with the reason."""
+    """Open a connection.  Raises ConnectionLostError with the reason."""
     reader, writer = await _within(
         _library().protocol_factory(_pytak_settings(config)), _CONNECT_S, NO_ANSWER
     )

@@ -1,7 +1,7 @@
 """Cursor-on-Target (CoT) 2.0 events of the station's picture; ``CotEvents`` is pure.
 
-Nothing is made without a place on the Earth, and a place is stale by the time at which it was
-measured, however late its event is sent.
+Nothing is made without a position on the Earth.  A position becomes stale by the time at which it
+was measured, however late its event is sent.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _VERSION = version("muster")
 
 @dataclass(frozen=True, slots=True)
 class GeodeticPlace:
-    """A place on the Earth (WGS-84) with its 95 % errors; None: the height is unknown."""
+    """Position on the Earth (WGS-84) with its 95 % errors; None if the height is unknown."""
 
     lat_deg: float
     lon_deg: float
@@ -45,7 +45,7 @@ class GeodeticPlace:
 
 
 def place_of(position: PositionView | None, anchor: AnchorView | None) -> GeodeticPlace | None:
-    """None where the place on the Earth is unknown: latitude and longitude 0 are none."""
+    """Position on the Earth; None if it is unknown, which latitude and longitude 0 also mean."""
     if position is None or anchor is None or _is_nowhere(anchor.lat_deg, anchor.lon_deg):
         return None
     frame = Anchor(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.plan_rotation_rad)
@@ -88,7 +88,9 @@ class CotEvents:
     def person(
         self, unit: UnitView, position: PositionView, place: GeodeticPlace, motion: GroundMotion
     ) -> bytes:
-        """Event of a person at a position; stale when the position is, whenever it is sent."""
+        """Event of a person at a position.  It becomes stale when the position does, whenever it is
+        sent.
+        """
         at_ms = position.t_ms
         event = _event(self.uid(unit.unit_id), PERSON, how_of(position), at_ms, stale_ms(position))
         _add_point(event, place)
@@ -162,7 +164,7 @@ class CotEvents:
         return detail, event
 
     def way(self, unit: UnitView, position: PositionView, places: Sequence[GeodeticPlace]) -> bytes:
-        """Breadcrumbs: the way to a position as a line, oldest place first."""
+        """Breadcrumbs: the way to a position as a line, oldest point first."""
         uid = f"{self.uid(unit.unit_id)}-way"
         event = _event(uid, WAY, how_of(position), position.t_ms, stale_ms(position))
         _add_point(event, places[-1])
@@ -177,7 +179,7 @@ class CotEvents:
         return _bytes(event)
 
     def ping(self, anchor: AnchorView, now_ms: int) -> bytes:
-        """Question whether the server is there; it answers with ``t-x-c-t-r``."""
+        """Ping, which the server answers with ``t-x-c-t-r``."""
         uid = f"{self._prefix}-ping"
         event = _event(uid, PING, "m-g", now_ms, now_ms + _STALE_AFTER_MS)
         place = GeodeticPlace(anchor.lat_deg, anchor.lon_deg, anchor.height_m, float(UNKNOWN), None)
@@ -187,13 +189,13 @@ class CotEvents:
 
 
 def how_of(position: PositionView) -> str:
-    """Origin of the position, in CoT's term."""
+    """Source of the position, in CoT's term."""
     since_s = position.since_gps_s
     return FUSED if since_s is not None and since_s <= _GNSS_HOLDS_S else DEAD_RECKONED
 
 
 def stale_ms(position: PositionView) -> int:
-    """Time from which the position is shown as old, as on the station's own console."""
+    """Time from which the position is shown as old, the same as on the station's console."""
     return position.t_ms + _STALE_AFTER_MS
 
 
@@ -210,7 +212,9 @@ def motion_between(
     place: GeodeticPlace,
     rotation_rad: float,
 ) -> GroundMotion:
-    """Speed since an earlier place; course of the way, or of the wearer's heading at rest."""
+    """Speed since an earlier position, and the course: of the way, or the wearer's heading at
+    rest.
+    """
     course_deg = 0.0
     if position.heading_std_rad < _KNOWN_HEADING_RAD:
         course_deg = math.degrees(position.heading_rad + rotation_rad)

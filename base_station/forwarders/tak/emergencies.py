@@ -1,5 +1,5 @@
-"""Emergencies as TAK has them: one alert of a person while any emergency alarm is open, then its
-cancellation.  Both are repeated, as an alert that was sent may not have arrived; none is dropped.
+"""Emergencies as TAK has them: one alert for a person while any emergency alarm is open, then its
+cancellation.  Both are repeated, as an alert may not have arrived; none is dropped.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ class EmergencyAlert:
 
 
 class Emergencies:
-    """Alerts by unit; monotonic times."""
+    """Alerts by unit; times are monotonic."""
 
     def __init__(self) -> None:
         self._alerts: dict[str, EmergencyAlert] = {}
         self._has_picture = False
 
     def use_picture(self, alarms: Iterable[AlarmView], now_ms: int) -> None:
-        """Take all alarms of a new picture, which has every open one."""
+        """Use the alarms of a new picture, which has every open one."""
         present = {alarm.alarm_id: alarm for alarm in alarms}
         for alert in list(self._alerts.values()):
             for alarm_id in [one for one in alert.alarms if one not in present]:
@@ -58,7 +58,7 @@ class Emergencies:
         self._has_picture = True
 
     def note(self, alarm: AlarmView) -> None:
-        """Take one alarm as it is now."""
+        """Use one alarm in its present state."""
         alert = self._alerts.get(alarm.unit_id)
         if _is_over(alarm) or not _is_emergency(alarm):
             if alert is not None and alarm.alarm_id in alert.alarms:
@@ -86,12 +86,12 @@ class Emergencies:
         )
 
     def repeat_all(self) -> None:
-        """Make all due at once: the connection is a new one."""
+        """Make all alerts due at once, because the connection is a new one."""
         for alert in self._alerts.values():
             alert.due_ns = 0
 
     def due(self, now_ns: int) -> Iterator[EmergencyAlert]:
-        """Alerts to send now."""
+        """Alerts that are to be sent now."""
         yield from [alert for alert in self._alerts.values() if alert.due_ns <= now_ns]
 
     def note_sent(self, alert: EmergencyAlert, now_ns: int) -> None:
