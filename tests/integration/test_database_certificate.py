@@ -111,6 +111,7 @@ def test_server_is_refused_that_does_not_prove_it(
     with pytest.raises(DatabaseAwayError, match=words) as refused:
         ServerStore(over_tls(server, place, host=host, asked=asked), is_station=True)
     assert server.password not in str(refused.value)
+    assert "user and password" not in str(refused.value)
 
 
 def test_certificate_that_expires_meanwhile_is_a_problem_until_there_is_another(

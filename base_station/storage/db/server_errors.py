@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 
-from shared.coded_text import coded
+from shared.coded_text import code_of_text, coded, text_of_error
 from shared.errors import DatabaseAwayError, DiskFullError, StoreError
 
 
@@ -44,6 +44,11 @@ def store_error(error: SQLAlchemyError, what: str) -> StoreError:
         if code.startswith(one.codes):
             return one.kind(f"{what}: {reason}; {one.remedy}")
     return StoreError(f"{what}: {reason}")
+
+
+def is_about_certificate(refusal: StoreError) -> bool:
+    """True where the text says what to do about TLS, and nothing else is wrong."""
+    return code_of_text(text_of_error(refusal)).code not in ("", "database-unreachable")
 
 
 def _unreachable(reason: str) -> str:

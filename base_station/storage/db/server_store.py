@@ -22,7 +22,7 @@ from base_station.storage.db.migrate import migrate
 from base_station.storage.db.models import Base
 from base_station.storage.db.server_address import ServerAddress
 from base_station.storage.db.server_engine import STATION_LOCK, STATION_WAIT_S, server_engines
-from base_station.storage.db.server_errors import is_away, store_error
+from base_station.storage.db.server_errors import is_about_certificate, is_away, store_error
 from shared.coded_text import coded, join_texts, text_of_error
 from shared.errors import DatabaseAwayError, StoreError
 
@@ -30,6 +30,9 @@ _log = logging.getLogger(__name__)
 
 RETRY_S = 2.0  # between two attempts to reach the server
 TRY_S = 10.0  # limit of one attempt
+_SEE_ADDRESS = (
+    "; see address, user and password (database_password_file, or PGPASSWORD in the environment)"
+)
 OLDEST_SERVER = 140_000  # in the form of server_version_num: 14.0
 
 
@@ -54,10 +57,10 @@ class ServerStore:
         except SQLAlchemyError as error:
             self.close()
             kind = DatabaseAwayError if is_away(error) else StoreError
+            refusal = store_error(error, "it refuses")
+            advice = "" if is_about_certificate(refusal) else _SEE_ADDRESS
             raise kind(
-                f"{self.name} cannot be opened as the station's database: "
-                f"{store_error(error, 'it refuses')}; see address, user and password "
-                "(database_password_file, or PGPASSWORD in the environment)"
+                f"{self.name} cannot be opened as the station's database: {refusal}{advice}"
             ) from error
         except StoreError:
             self.close()

@@ -39,7 +39,7 @@ from tests.rig.station_command import Browser
 from tests.rig.station_process import Membership, StationProcess, station_process
 
 _RATE_HZ = 2.0  # messages of a unit
-_STEP_S = 5.0
+_STEP_S = 2.0  # the station closes a connection that was idle for five seconds
 _PATIENCE_S = 1200.0  # twice the longest pause of the station
 _LOGGED = re.compile(r".*(?:not archived|takes incidents again).*")
 
@@ -184,7 +184,8 @@ def measure(away_s: float, units: int, incident_s: float) -> OutageReport:
         members = Membership(folder, names, plain=True)
         settings = folder / "station.toml"
         settings.write_text(
-            f'[archive]\nlocation = "{ADDRESS}"\n[log]\nsegment_s = {max(incident_s / 2, 1.0)}\n'
+            f'[archive]\nlocation = "{ADDRESS}"\nalarm_after_s = {max(away_s / 4, 60.0)}\n'
+            f"[log]\nsegment_s = {max(incident_s / 2, 1.0)}\n"
         )
         station = closing.enter_context(station_process(folder, members.address, settings=settings))
         speakers = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
