@@ -10,7 +10,7 @@ import warnings
 
 from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
 
-from shared.coded_text import coded
+from shared.coded_text import Term, coded
 from shared.errors import ConfigError
 
 MAX_BYTES = 10_000_000
@@ -125,7 +125,9 @@ def _require_pixel_limit(opened: Image.Image, kind: str) -> None:
 
 
 def _too_many_pixels(kind: str = "photo", most_pixels: int = _MAX_PIXELS["JPEG"]) -> str:
-    return (
-        f"the {kind} has more than {most_pixels // 1_000_000} million pixels; "
-        "make it smaller and send it again"
+    return coded(
+        "picture-too-many-pixels",
+        "the {kind} has more than {most} million pixels; make it smaller and send it again",
+        kind=Term(kind, kind),
+        most=most_pixels // 1_000_000,
     )

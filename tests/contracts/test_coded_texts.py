@@ -13,6 +13,8 @@ from string import Formatter
 from typing import NamedTuple
 
 import pytest
+from fastapi.dependencies.models import Dependant
+from fastapi.routing import APIRoute
 
 from base_station.api import posted_samples
 from base_station.api.forms import Form
@@ -118,13 +120,25 @@ def test_every_code_has_a_message_with_its_parameters(language: str) -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_field_of_a_form_has_a_label(language: str) -> None:
+def test_every_field_of_a_form_and_query_has_a_label(language: str) -> None:
     """But for samples of sensors, which programs send."""
     path = _CATALOGUES / language / "field_labels.ts"
     labels = set(re.findall(r'^  (\w+): "', path.read_text(), re.MULTILINE))
     assert ROUTERS  # has every form imported
     forms = [form for form in forms_of(Form) if form.__module__ != posted_samples.__name__]
-    assert labels == {name for form in forms for name in form.model_fields}
+    fields = {name for form in forms for name in form.model_fields}
+    assert labels == fields | parameters_of_queries()
+
+
+def parameters_of_queries() -> set[str]:
+    routes = [one for router in ROUTERS for one in router.routes if isinstance(one, APIRoute)]
+    return {name for route in routes for name in _queried(route.dependant)}
+
+
+def _queried(dependant: Dependant) -> Iterator[str]:
+    yield from (one.alias for one in dependant.query_params)
+    for one in dependant.dependencies:
+        yield from _queried(one)
 
 
 def forms_of(kind: type[Form]) -> Iterator[type[Form]]:

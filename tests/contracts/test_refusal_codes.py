@@ -75,6 +75,12 @@ def uncoded_refusals(source: str) -> Iterator[tuple[int, str]]:
         for target in node.targets
         if isinstance(target, ast.Name)
     }
+    composing = {
+        node.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef)
+        and any(isinstance(each, ast.Return) and _is_plain(each.value) for each in ast.walk(node))
+    }
     for node in ast.walk(tree):
         if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
             continue
@@ -82,11 +88,16 @@ def uncoded_refusals(source: str) -> Iterator[tuple[int, str]]:
         if place is None or len(node.args) <= place:
             continue
         text = node.args[place]
-        if _is_plain(text) or (isinstance(text, ast.Name) and text.id in plain):
+        is_composed = isinstance(text, ast.Call) and _name_of(text.func) in composing
+        if _is_plain(text) or _name_of(text) in plain or is_composed:
             yield node.lineno, functions.get(node, "")
 
 
-def _is_plain(node: ast.expr) -> bool:
+def _name_of(node: ast.expr) -> str:
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _is_plain(node: ast.expr | None) -> bool:
     """True for a text, one with values in it, and ``str(error)``, which leaves the code behind."""
     if isinstance(node, ast.Constant):
         return isinstance(node.value, str)
@@ -121,8 +132,12 @@ raise UserError(coded("none-of", "There is no {thing}.", thing=thing))
 raise UserError("there is none")
 def refused():
     raise UserError("not here")
+def _no(thing):
+    return f"There is no {thing}."
+raise Problem(404, _no(thing))
 """
-    assert list(uncoded_refusals(source)) == [(4, ""), (6, ""), (7, ""), (10, ""), (12, "refused")]
+    plain = [(4, ""), (6, ""), (7, ""), (10, ""), (12, "refused"), (15, "")]
+    assert sorted(uncoded_refusals(source)) == plain
 
 
 def test_every_refusal_of_the_api_has_a_code() -> None:

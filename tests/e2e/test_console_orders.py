@@ -42,8 +42,8 @@ def test_a_roll_call_is_received_and_acknowledged(
 
 
 def test_confirmation_of_par_by_radio_can_be_undone(page: Page, card: Locator) -> None:
-    clock = page.get_by_role("button", name="until the next PAR")
-    expect(clock).to_contain_text(re.compile(r"PAR 0?\d:\d\d"))
+    clock = page.get_by_role("button", name="PAR in")
+    expect(clock).to_contain_text(re.compile(r"PAR in \d+ (min|s)"))
     clock.click()
     dialog = page.get_by_role("dialog")
     row = dialog.get_by_role("listitem").filter(has_text=NAME)
@@ -58,7 +58,7 @@ def test_confirmation_of_par_by_radio_can_be_undone(page: Page, card: Locator) -
     row.get_by_role("button", name="Yes, undo").click()
     expect(row).to_contain_text("by own unit")
     close(dialog)
-    expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"))
+    expect(card).to_contain_text(re.compile(r"PAR due in (10|9)\smin"))
 
 
 def test_rare_actions_are_on_the_chosen_card(page: Page, card: Locator, wearable: Wearable) -> None:
@@ -145,7 +145,7 @@ def test_unit_reports_that_it_cannot_notify_and_later_that_it_has(
 
 
 def test_roll_call_and_plan_are_accessible(page: Page, card: Locator) -> None:
-    page.get_by_role("button", name="until the next PAR").click()
+    page.get_by_role("button", name="PAR in").click()
     assert barriers(page) == []
     close(page.get_by_role("dialog"))
     card.get_by_role("button", name="Correct position …").click()

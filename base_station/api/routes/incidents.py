@@ -108,7 +108,7 @@ def new_incident_id(station: Services) -> str:
 
 
 def _no_incident(incident_id: str) -> str:
-    return f"There is no incident {incident_id}."
+    return coded("incident-unknown", "There is no incident {incident}.", incident=incident_id)
 
 
 def window_of(incident: models.IncidentRow) -> Window:

@@ -47,13 +47,18 @@ export function minutes(ms: number): string {
   return whole < 60 ? minutesText(whole) : hoursText(whole);
 }
 
-/** Minutes and seconds of a timer: "12:40", "1:02:40". */
+/** A time that is left, never more than there is: "45 s", "18 min", "1 h 05 min". */
+export function timeLeft(ms: number): string {
+  return ms < 60_000 ? secondsText(number(Math.floor(Math.max(0, ms) / 1000))) : minutes(ms);
+}
+
+/** Minutes and seconds of a timer: "2:40", "12:40", "1:02:40". */
 export function countdown(ms: number): string {
   const seconds = Math.ceil(Math.max(0, ms) / 1000);
   const minutes = Math.floor(seconds / 60);
   const rest = pad(seconds % 60);
   return minutes < 60
-    ? `${pad(minutes)}:${rest}`
+    ? `${minutes}:${rest}`
     : `${Math.floor(minutes / 60)}:${pad(minutes % 60)}:${rest}`;
 }
 

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { confirmationWords, crewsOnDuty, parOf, rollCall } from "../src/live/duty";
 import type { DutyView, IncidentView, UnitView } from "../src/wire";
-import { countdown } from "../src/format";
+import { countdown, timeLeft } from "../src/format";
 import { unit } from "./fixtures";
 
 const INCIDENT: IncidentView = {
@@ -111,9 +111,21 @@ describe("the roll call", () => {
 it("counts down like a kitchen clock", () => {
   expect([760_000, 1, 0, -5, 3_760_000].map(countdown)).toEqual([
     "12:40",
-    "00:01",
-    "00:00",
-    "00:00",
+    "0:01",
+    "0:00",
+    "0:00",
     "1:02:40",
+  ]);
+});
+
+it("promises no more time than is left", () => {
+  expect([1_127_000, 119_900, 60_000, 59_999, 900, -5, 3_900_000].map(timeLeft)).toEqual([
+    "18\u00a0min",
+    "1\u00a0min",
+    "1\u00a0min",
+    "59\u00a0s",
+    "0\u00a0s",
+    "0\u00a0s",
+    "1\u00a0h 05\u00a0min",
   ]);
 });

@@ -25,20 +25,16 @@ export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   );
 }
 
-/** The floor, in front of alarms as short as on its button, for they are cut first; then the alarms or the place. */
+/** The floor, as short as on its button, for what is behind it would be cut; then the alarms or the place. */
 function whatAndWhere(unit: UnitView, picture: Picture): string {
-  const words = whatOrWhere(unit, picture, format.floorName);
+  const words = whatOrWhere(unit, picture);
   const floor = unit.position?.floor ?? null;
   const isKnown = unit.position !== null && format.isFloorLikely(unit.position);
   return unit.alarms.length === 0 || floor === null || !isKnown ? words : listed([format.shortFloor(floor), words]);
 }
 
 /** The alarms, or else where it is. */
-export function whatOrWhere(
-  unit: UnitView,
-  picture: Picture,
-  floorWord: (floor: number) => string = format.shortFloor,
-): string {
+export function whatOrWhere(unit: UnitView, picture: Picture): string {
   const alarms = unit.alarms
     .map((alarmId) => picture.alarms.value.get(alarmId))
     .filter((alarm) => alarm !== undefined)
@@ -53,5 +49,5 @@ export function whatOrWhere(
     return placeWords(unit.position, picture, old);
   }
   const room = roomWord(picture.plan.value, unit.position, regionAt(unit.position, 0));
-  return room === "" ? format.floorName(floor) : listed([floorWord(floor), room]);
+  return room === "" ? format.floorName(floor) : listed([format.shortFloor(floor), room]);
 }

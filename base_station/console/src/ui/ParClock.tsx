@@ -2,7 +2,7 @@ import { openDialog } from "../uiState";
 import { confirmationWords, parOf, rollCall, type ParState } from "../live/duty";
 import type { Picture } from "../live/picture";
 import type { UnitView } from "../wire";
-import { countdown } from "../format";
+import { countdown, timeLeft } from "../format";
 import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
@@ -21,7 +21,7 @@ export function ParClock({ picture }: { picture: Picture }) {
   const words =
     call.overdue > 0
       ? t("par.overdue_count", { count: call.overdue })
-      : t("par.countdown", { time: countdown(call.leftMs) });
+      : t("par.due_header", { time: timeLeft(call.leftMs) });
   return (
     <button
       type="button"
@@ -31,7 +31,6 @@ export function ParClock({ picture }: { picture: Picture }) {
       <Icon name={ICONS[call.state]} />
       <span class="par-words">
         <span>{words}</span>
-        <span class="spoken">{call.overdue > 0 ? "" : t("par.until_next")}</span>
         {call.unconfirmed > 0 && <small>{t("par.unconfirmed_count", { count: call.unconfirmed })}</small>}
       </span>
     </button>
@@ -69,11 +68,13 @@ export function ParMark({ unit, picture, brief = false, isShort = false }: MarkP
 
 function markWords(state: ParState, isRequested: boolean, leftMs: number): string {
   if (state === "overdue") return t("par.overdue", { time: countdown(-leftMs) });
-  return t(isRequested ? "par.requested" : "par.countdown", { time: countdown(leftMs) });
+  return isRequested
+    ? t("par.requested", { time: countdown(leftMs) })
+    : t("par.due", { time: timeLeft(leftMs) });
 }
 
 function shortWords(state: ParState, leftMs: number): string {
   return state === "overdue"
     ? t("par.overdue_short", { time: countdown(-leftMs) })
-    : t("par.countdown", { time: countdown(leftMs) });
+    : t("par.due_short", { time: timeLeft(leftMs) });
 }

@@ -9,11 +9,13 @@ import { EraseForm } from "./EraseForm";
 import { onDemand } from "./onDemand";
 import { useSinglePress } from "./useGuardedPress";
 import { Photo } from "./Photo";
-import { fields, useLoaded } from "./useLoaded";
+import { useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
 
 const PeopleImport = onDemand(() => import("./PeopleImport").then((part) => part.PeopleImport));
 const CrewBoard = onDemand(() => import("./CrewBoard").then((part) => part.CrewBoard));
+
+const CREWS = "crews"; // the id of the list of names that a crew's field offers
 
 export function PeopleDialog() {
   const [people, again] = useLoaded(api.people);
@@ -56,11 +58,17 @@ export function PeopleDialog() {
 }
 
 function PeopleList({ people, again }: { people: readonly api.Person[] | null; again: () => void }) {
+  const crews = [...new Set((people ?? []).map(({ crew }) => crew).filter((crew) => crew !== ""))].sort();
   return (
     <>
+      <datalist id={CREWS}>
+        {crews.map((crew) => (
+          <option key={crew} value={crew} />
+        ))}
+      </datalist>
       <PersonForm done={again} />
       <table class="stacked">
-        <Columns names={[t("person.name"), t("person.crew"), t("person.role"), t("person.photo")]} spoken={t("person.change")} />
+        <Columns names={[t("person.name"), t("person.crew"), t("person.role")]} spoken={t("person.change")} />
         <tbody>
           {(people ?? []).map((person) => (
             <PersonRow key={person.person_id} person={person} done={again} />
@@ -88,7 +96,7 @@ function PersonRow({ person, done }: RowProps) {
     };
     return (
       <tr>
-        <td colSpan={5}>
+        <td colSpan={4}>
           <ChangeForm person={person} done={ended} />
         </td>
       </tr>
@@ -104,17 +112,6 @@ function PersonRow({ person, done }: RowProps) {
       </th>
       <td data-label={t("person.crew")}>{person.crew}</td>
       <td data-label={t("person.role")}>{person.role}</td>
-      <td data-label={t("person.photo")}>
-        <input
-          type="file"
-          accept="image/*"
-          aria-label={t("person.new_photo", { name: person.name })}
-          onChange={(event) => {
-            const photo = event.currentTarget.files?.[0];
-            if (photo) void attempt(api.setPhoto(person.person_id, photo)).then(done);
-          }}
-        />
-      </td>
       <td>
         <div class="row-actions">
           <button
@@ -147,12 +144,12 @@ function ChangeForm({ person, done }: RowProps) {
       class="row"
       ref={form}
       onSubmit={(event) => {
-        const { name = "", crew = "", role = "" } = fields(event);
-        const changed = api.changePerson(person.person_id, { name, crew, role });
-        void attempt(changed).then((person) => person && done());
+        event.preventDefault();
+        void attempt(change(person, new FormData(event.currentTarget))).then((changed) => changed && done());
       }}
     >
       <PersonFields person={person} />
+      <PhotoField />
       <button class="primary">{t("person.save")}</button>
       <button type="button" onClick={done}>
         {t("menu.cancel")}
@@ -170,7 +167,7 @@ function PersonFields({ person }: { person?: api.Person }) {
       </label>
       <label>
         {t("person.crew")}
-        <input name="crew" maxLength={60} defaultValue={person?.crew ?? ""} />
+        <input name="crew" maxLength={60} list={CREWS} defaultValue={person?.crew ?? ""} />
       </label>
       <label>
         {t("person.role")}
@@ -180,17 +177,37 @@ function PersonFields({ person }: { person?: api.Person }) {
   );
 }
 
+function PhotoField() {
+  return (
+    <label>
+      {t("person.photo")}
+      <input name="photo" type="file" accept="image/*" />
+    </label>
+  );
+}
+
 async function add(form: HTMLFormElement): Promise<void> {
   const data = new FormData(form);
-  const text = (name: string) => String(data.get(name) ?? "").trim();
-  const person = await api.addPerson({
-    name: text("name"),
-    crew: text("crew"),
-    role: text("role"),
-  });
+  const person = await api.addPerson(written(data));
   form.reset(); // whatever becomes of the photo: pressed again, the form would add somebody twice
+  await setPhoto(person, data);
+}
+
+/** True once all of it is done. */
+async function change(person: api.Person, data: FormData): Promise<true> {
+  await api.changePerson(person.person_id, written(data));
+  await setPhoto(person, data);
+  return true;
+}
+
+function written(data: FormData): { name: string; crew: string; role: string } {
+  const text = (name: string) => String(data.get(name) ?? "").trim();
+  return { name: text("name"), crew: text("crew"), role: text("role") };
+}
+
+async function setPhoto({ person_id }: api.Person, data: FormData): Promise<void> {
   const photo = data.get("photo");
-  if (photo instanceof File && photo.size > 0) await api.setPhoto(person.person_id, photo);
+  if (photo instanceof File && photo.size > 0) await api.setPhoto(person_id, photo);
 }
 
 function PersonForm({ done }: { done: () => void }) {
@@ -205,10 +222,7 @@ function PersonForm({ done }: { done: () => void }) {
       }}
     >
       <PersonFields />
-      <label>
-        {t("person.photo")}
-        <input name="photo" type="file" accept="image/*" />
-      </label>
+      <PhotoField />
       <button class="primary">{t("person.add")}</button>
     </form>
   );

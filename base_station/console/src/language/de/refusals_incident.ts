@@ -80,6 +80,8 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "Ein Einsatz braucht eine eigene Kennung, nicht {incident}",
   "incident-not-among-open":
     "Es gibt keinen offenen Einsatz {incident}.",
+  "incident-unknown":
+    "Es gibt keinen Einsatz {incident}.",
   "incident-not-named":
     "Mehrere Einsätze sind offen; nennen Sie einen in incident_id: {incidents}.",
   "incident-not-open":

@@ -42,6 +42,8 @@ export const refusal_people: Part<"refusal_people"> = {
     "Von dieser Person gibt es kein Foto.",
   "photo-too-many-bytes":
     "Das Foto ist größer als {most_mb}",
+  "picture-too-many-pixels":
+    "{kind, select, map {Die Karte} other {Das Foto}} hat mehr als {most, number} Millionen Pixel; verkleinern und noch einmal senden",
   "photo-unreadable":
     "Das Foto ist nicht lesbar; senden Sie eine Datei im Format JPEG, PNG oder WebP",
   "still-enrolled":

@@ -26,7 +26,6 @@ export const person: Part<"person"> = {
   photo: "Foto",
   change: "Ändern",
   none: "Noch niemand. Alle hinzufügen, die ein Gerät tragen können.",
-  new_photo: "Neues Foto von {name}",
   change_of: "{name} ändern",
   erase: "Name, Foto und alle Aufenthaltsorte dieser Person werden gelöscht.",
   save: "Speichern",
@@ -55,8 +54,9 @@ export const people_import: Part<"people_import"> = {
 
 export const par: Part<"par"> = {
   overdue_count: "{count, plural, one {# PAR} other {# PAR}} überfällig",
-  countdown: "PAR {time}",
-  until_next: " bis zur nächsten PAR",
+  due: "PAR fällig in {time}",
+  due_header: "PAR in {time}",
+  due_short: "PAR {time}",
   unconfirmed_count: "{count, number} noch nicht bestätigt",
   state: "PAR {state}",
   overdue: "PAR überfällig {time}",

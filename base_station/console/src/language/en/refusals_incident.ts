@@ -78,6 +78,8 @@ export const refusal_incident = {
     "an incident needs an id of its own, not “{incident}”",
   "incident-not-among-open":
     "There is no open incident {incident}.",
+  "incident-unknown":
+    "There is no incident {incident}.",
   "incident-not-named":
     "Several incidents are open; name one in incident_id: {incidents}.",
   "incident-not-open":

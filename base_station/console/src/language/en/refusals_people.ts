@@ -40,6 +40,8 @@ export const refusal_people = {
     "There is no photo of this person.",
   "photo-too-many-bytes":
     "the photo is larger than {most_mb}",
+  "picture-too-many-pixels":
+    "the {kind, select, map {map} other {photo}} has more than {most, number} million pixels; make it smaller and send it again",
   "photo-unreadable":
     "the photo cannot be read; send a JPEG, PNG or WebP file",
   "still-enrolled":

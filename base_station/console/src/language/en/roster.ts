@@ -25,7 +25,6 @@ export const person = {
   photo: "Photo",
   change: "Change",
   none: "Nobody yet. Add whoever may wear a unit.",
-  new_photo: "New photo of {name}",
   change_of: "Change {name}",
   erase: "Name, photo and everywhere this person was are deleted.",
   save: "Save",
@@ -52,8 +51,9 @@ export const people_import = {
 
 export const par = {
   overdue_count: "{count, plural, one {# PAR} other {# PARs}} overdue",
-  countdown: "PAR {time}",
-  until_next: " until the next PAR",
+  due: "PAR due in {time}",
+  due_header: "PAR in {time}",
+  due_short: "PAR {time}",
   unconfirmed_count: "{count, number} not yet confirmed",
   state: "PAR {state}",
   overdue: "PAR overdue {time}",

@@ -80,6 +80,8 @@ export const refusal_incident: Part<"refusal_incident"> = {
     "Une intervention a besoin de son propre identifiant, et non {incident}",
   "incident-not-among-open":
     "Il n’y a pas d’intervention en cours {incident}.",
+  "incident-unknown":
+    "Il n’y a pas d’intervention {incident}.",
   "incident-not-named":
     "Plusieurs interventions sont en cours\u00a0; nommez-en une dans incident_id\u00a0: {incidents}.",
   "incident-not-open":

@@ -42,6 +42,8 @@ export const refusal_people: Part<"refusal_people"> = {
     "Il n’y a pas de photo de cette personne.",
   "photo-too-many-bytes":
     "La photo dépasse {most_mb}",
+  "picture-too-many-pixels":
+    "{kind, select, map {la carte} other {la photo}} a plus de {most, number} millions de pixels\u00a0; réduire et envoyer à nouveau",
   "photo-unreadable":
     "La photo est illisible\u00a0; envoyez un fichier JPEG, PNG ou WebP",
   "still-enrolled":

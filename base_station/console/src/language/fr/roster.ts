@@ -26,7 +26,6 @@ export const person: Part<"person"> = {
   photo: "Photo",
   change: "Modifier",
   none: "Personne pour l’instant. Ajouter ceux qui peuvent porter un boîtier.",
-  new_photo: "Nouvelle photo de {name}",
   change_of: "Modifier {name}",
   erase: "Le nom, la photo et tous les lieux où était cette personne sont supprimés.",
   save: "Enregistrer",
@@ -55,8 +54,9 @@ export const people_import: Part<"people_import"> = {
 
 export const par: Part<"par"> = {
   overdue_count: "{count, plural, one {# PAR} other {# PAR}} en retard",
-  countdown: "PAR {time}",
-  until_next: " avant le prochain PAR",
+  due: "PAR dû dans {time}",
+  due_header: "PAR dans {time}",
+  due_short: "PAR {time}",
   unconfirmed_count: "{count, number} à confirmer",
   state: "PAR {state}",
   overdue: "PAR en retard de {time}",
