@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from base_station.report import texts
 from base_station.report.contents import FloorTrail, Line, PersonEntry
 from base_station.report.markup import Markup, element
-from base_station.report.style import END, GAP, NUMBER, SCALE, SMALL, TRAIL, WALL
+from base_station.report.style import END, GAP, NUMBER, ON_LINE, PAPER, SCALE, SMALL, TRAIL, WALL
 from base_station.site.plan import Plan
 
 # Okabe and Ito (2008), those that are dark enough on white: distinct for the colour-blind.
@@ -17,6 +19,9 @@ _WIDTH, _MOST_HEIGHT = 680.0, 440.0
 _SMALL_WIDTH, _SMALL_HEIGHT = 230.0, 200.0
 _MARGIN = 18.0
 _LEAST_M = 10.0  # shown, however small the movement
+_NUMBER_EVERY = 110.0  # along a trail, in the picture's units
+_BESIDE_BEGIN = 12.0  # the circle of the first position stays free
+_STAGGER = (math.sqrt(5.0) - 1.0) / 2.0  # golden section: numbers of neighbours are far apart
 _SCALES_M = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 
 
@@ -69,6 +74,7 @@ def floor_picture(
         *(mark for one in people for mark in _ends(frame, one, floor, small=small)),
     ]
     if not small:
+        content.extend(mark for one, trail in drawn for mark in _numbers(frame, one, trail))
         content.append(_north(frame))
     content.append(_scale(frame))
     return element(
@@ -111,6 +117,31 @@ def _trail(frame: _Frame, person: PersonEntry, trail: FloorTrail) -> Iterable[Ma
     for lines, style in ((trail.in_contact, TRAIL), (trail.radio_gap, GAP)):
         if lines:
             yield element("path", d=frame.path(lines), stroke=colour, **style)
+
+
+def _numbers(frame: _Frame, person: PersonEntry, trail: FloorTrail) -> Iterable[Markup]:
+    """The person's number on the line: trails that run together are alike without colours."""
+    first = _BESIDE_BEGIN + _NUMBER_EVERY * (person.number * _STAGGER % 1.0)
+    number, width = str(person.number), 6.0 * len(str(person.number))
+    for line in (*trail.in_contact, *trail.radio_gap):
+        for x, y in places_along([frame.at(*one) for one in line], first, _NUMBER_EVERY):
+            box = {"x": x - width / 2.0, "y": y - 5.0, "width": width, "height": 10.0}
+            yield element("rect", **box, **PAPER)
+            yield element("text", number, x=x, y=y + 3.5, **ON_LINE)
+
+
+def places_along(
+    points: Sequence[tuple[float, float]], first: float, every: float
+) -> Iterator[tuple[float, float]]:
+    """Points of a line, the first so far along it and then one for each ``every``."""
+    ahead = first
+    for (x, y), (next_x, next_y) in pairwise(points):
+        length = math.hypot(next_x - x, next_y - y)
+        while ahead <= length and length > 0.0:
+            part = ahead / length
+            yield x + part * (next_x - x), y + part * (next_y - y)
+            ahead += every
+        ahead -= length
 
 
 def _ends(

@@ -53,6 +53,8 @@ SMALL: Look = {**_FONT, "font_size": 9.0}
 RIGHT: Look = {**SMALL, "text_anchor": "end"}
 MIDDLE: Look = {**SMALL, "text_anchor": "middle"}
 NUMBER: Look = {**_FONT, "font_size": 12.0, "font_weight": "bold"}
+ON_LINE: Look = {**MIDDLE, "font_weight": "bold"}
+PAPER: Look = {"fill": "#fff"}
 WALL: Look = {"fill": "none", "stroke": "#999", "stroke_width": 1.2}
 TRAIL: Look = {
     "fill": "none",

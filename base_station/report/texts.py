@@ -59,7 +59,8 @@ NO_TIMELINE = "Nothing was recorded."
 TRAILS_KEY = (
     "Solid line: trail with radio contact. Dashed line: radio gap, known afterwards from the "
     "unit's memory. A line that ends without a square: the way from there on is not known. "
-    "Circle: first position. Square: last position. The number is that of the person below."
+    "Circle: first position. Square: last position. The number there and on the line is that of "
+    "the person below."
 )
 TRACES_KEY = (
     "From 60 s before to 60 s after the alarm was raised (vertical line). Link: one mark for each "

@@ -62,6 +62,21 @@ def confirm(where: Locator, name: str) -> None:
     where.get_by_role("button", name=f"Yes, {name.lower()}").click()
 
 
+class Presses:
+    """Counts clicks on the page."""
+
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        page.evaluate(
+            "() => { if (window.presses === undefined) addEventListener('click', () =>"
+            " { window.presses += 1; }, true); window.presses = 0; }"
+        )
+
+    def count(self, files: int = 0) -> int:
+        clicks: int = self._page.evaluate("window.presses")
+        return clicks + files
+
+
 def take_picture(shown: Page | Locator, folder: Path, name: str) -> None:
     """Take a picture; those of docs/howto with ``MUSTER_PICTURES=docs/howto``, in few colours."""
     taken = io.BytesIO(shown.screenshot())

@@ -37,7 +37,9 @@ def test_member_without_a_message_is_not_shown_as_confirmed(stage: Stage, screen
     expect(clock).to_contain_text("2 not yet confirmed")
     expect(clock).not_to_have_class(re.compile("green"))
     card = page.locator(".card", has_text="Astrid Lindqvist")
-    expect(card.locator(".par-mark")).to_have_text(re.compile(r"PAR due in 1[78]\smin.*not yet confirmed"))
+    expect(card.locator(".par-mark")).to_have_text(
+        re.compile(r"PAR due in 1[78]\smin.*not yet confirmed")
+    )
     expect(card.locator(".par-mark")).not_to_have_class(re.compile("green"))
     expect(card).to_contain_text("not located")
     roll_call(page)

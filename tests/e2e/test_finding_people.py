@@ -142,7 +142,7 @@ def test_line_has_name_and_words_beside_a_par_that_is_due(
     page.set_viewport_size({"width": 1280, "height": 800})
     line = page.locator(".card.line", has_text=scenes.NAMES[0])
     mark = line.locator(".par-mark")
-    expect(mark).to_have_text(re.compile(r"^PAR (\+\d+:\d+|\d+\s(min|s)$)"))
+    expect(mark).to_have_text(re.compile(r"^PAR (\+\d+:\d+|\d+\s(min|s))"))
     assert mark.evaluate(BEYOND_PX) <= 0
     assert line.locator(".name").evaluate(BEYOND_PX) <= 0
     words = line.locator(".line-words")

@@ -19,7 +19,15 @@ from PIL import Image, ImageDraw
 from playwright.sync_api import Browser, FilePayload, Locator, Page, expect
 
 from shared.enrolment import read_enrolment
-from tests.e2e.console_page import barriers, close, confirm, drawn, menu, take_picture
+from tests.e2e.console_page import (
+    Presses,
+    barriers,
+    close,
+    confirm,
+    drawn,
+    menu,
+    take_picture,
+)
 from tests.e2e.station_process import StationProcess
 from tests.rig.ifc_house import house_of_two_storeys
 from tests.rig.station_command import Agent
@@ -36,21 +44,6 @@ def station(
     station.start()
     yield station
     station.stop()
-
-
-class Presses:
-    """Counts clicks on the page."""
-
-    def __init__(self, page: Page) -> None:
-        self._page = page
-        page.evaluate(
-            "() => { if (window.presses === undefined) addEventListener('click', () =>"
-            " { window.presses += 1; }, true); window.presses = 0; }"
-        )
-
-    def count(self, files: int = 0) -> int:
-        clicks: int = self._page.evaluate("window.presses")
-        return clicks + files
 
 
 def choose_csv(dialog: Locator, content: bytes) -> Locator:

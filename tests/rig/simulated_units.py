@@ -6,9 +6,10 @@ import math
 import random
 import secrets
 import time
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from threading import Event, Thread
 
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
@@ -156,3 +157,21 @@ def speak_in_turn(
         if number % max(round(rate_hz), 1) == 0:
             on_second()
     return round(rate_hz * seconds) / (time.perf_counter() - began_s)
+
+
+@contextmanager
+def speaking(units: Sequence[BenchUnit], unit_rate_hz: float) -> Iterator[None]:
+    """All units send meanwhile, from a thread of its own, so many messages a second each."""
+    ending = Event()
+
+    def speak() -> None:
+        while not ending.is_set():
+            speak_in_turn(units, unit_rate_hz * len(units), 1.0, lambda: None)
+
+    thread = Thread(target=speak, name="simulated-units", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ending.set()
+        thread.join()

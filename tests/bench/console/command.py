@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Event, Thread
 from typing import Annotated
 
 import typer
@@ -22,7 +20,7 @@ from tests.rig.latency import Latency, latencies_ms, latency_of
 from tests.rig.paced_console import PacedConsole
 from tests.rig.pacing import wait_until
 from tests.rig.recorded_live import RecordedLive, Recorder
-from tests.rig.simulated_units import BenchUnit, speak_in_turn, unit_names
+from tests.rig.simulated_units import BenchUnit, speaking, unit_names
 from tests.rig.station_process import Membership, PlainTcp, StationProcess, station_process
 
 _ANCHOR = {"lat_deg": 59.33, "lon_deg": 18.06, "height_m": 30.0}
@@ -104,7 +102,7 @@ def _measure(
     for unit in units:
         unit.introduce()
     began_s = time.perf_counter()
-    with _speaking(units):
+    with speaking(units, _MESSAGES_HZ):
         time.sleep(_SETTLE_S)
         wire = _measure_wire(station, seconds)
         loads = [_measure_load(station, units, count, seconds) for count in (1, consoles)]
@@ -117,23 +115,6 @@ def _measure(
         recorded = RecordedLive(recorder.recording, closing)
         pages += [measure_page(station.api, rate, seconds, recorded) for rate in slowed]
     return ConsoleReport(len(units), sent / spoken_s, wire, loads, pages)
-
-
-@contextmanager
-def _speaking(units: list[BenchUnit]) -> Iterator[None]:
-    ending = Event()
-
-    def speak() -> None:
-        while not ending.is_set():
-            speak_in_turn(units, _MESSAGES_HZ * len(units), 1.0, lambda: None)
-
-    thread = Thread(target=speak, name="bench-units", daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        ending.set()
-        thread.join()
 
 
 def _measure_wire(station: StationProcess, seconds: float) -> list[WireReport]:
