@@ -43,7 +43,7 @@ def test_a_roll_call_is_received_and_acknowledged(
 
 def test_confirmation_of_par_by_radio_can_be_undone(page: Page, card: Locator) -> None:
     clock = page.get_by_role("button", name="PAR in")
-    expect(clock).to_contain_text(re.compile(r"PAR in \d+ (min|s)"))
+    expect(clock).to_contain_text(re.compile(r"PAR in \d+\s(min|s)"))
     clock.click()
     dialog = page.get_by_role("dialog")
     row = dialog.get_by_role("listitem").filter(has_text=NAME)

@@ -214,3 +214,29 @@ def test_closing_a_finished_incident_asks_the_usual_question(stage: Stage) -> No
     expect(
         dialog.get_by_role("group", name="It cannot be opened again.", exact=True)
     ).to_be_visible()
+
+
+@pytest.mark.parametrize("screen", ["laptop", "large", "tablet", "phone"])
+def test_orders_under_way_move_no_button(stage: Stage, screen: str) -> None:
+    """Four at a time are usual: an evacuation, a PAR, a sound locator and a message."""
+    picture = scenes.quiet()
+    page, station = stage.open(picture, screen)
+    bar = page.get_by_role("group", name="Commands")
+
+    def tops() -> list[float]:
+        boxes = [one.bounding_box() for one in bar.get_by_role("button").all()[:3]]
+        return [box["y"] for box in boxes if box is not None]
+
+    before = tops()
+    states = {one.unit_id: "received" for one in picture.units}
+    orders = tuple(
+        scenes.order(kind, kind, states) for kind in ("par_request", "locate", "text", "evacuate")
+    )
+    for count in (1, 2, 3, 4):
+        station.change(commands=orders[-count:])
+        expect(bar).to_contain_text("Evacuate 0 of")
+        assert tops() == before, count
+        assert flaws(page) == []
+    expect(bar.get_by_role("listitem")).to_have_count(2)
+    bar.get_by_role("button", name="3 more orders").click()
+    expect(page.get_by_role("dialog").locator(".order")).to_have_count(4)

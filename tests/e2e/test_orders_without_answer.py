@@ -6,6 +6,7 @@ from playwright.sync_api import expect
 
 from tests.e2e import scenes
 from tests.e2e.console_page import press
+from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 
 
@@ -19,3 +20,18 @@ def test_notice_reports_that_the_order_was_carried_out(stage: Stage) -> None:
     expect(notice).to_contain_text("No reply from the base station")
     expect(notice).to_contain_text("What had no answer was carried out at")
     expect(notice).not_to_contain_text("No reply")
+
+
+def test_notice_on_a_phone_covers_no_button(stage: Stage) -> None:
+    """The actions of the chosen card stand at the end of the list, where it would lie."""
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    page.route("**/api/v1/alarms/*/acknowledge", lambda route: route.abort())
+    page.route("**/api/v1/idempotency-keys/*", lambda route: route.abort())
+    page.locator(".card", has_text="Tomas Novak").click()
+    press(page.locator(".alarm").first.get_by_role("button", name="Acknowledge"))
+    notice = page.locator(".notice")
+    expect(notice).to_contain_text("No reply from the base station")
+    expect(page.get_by_role("group", name="For Tomas Novak")).to_be_in_viewport(ratio=1)
+    assert flaws(page) == []
+    notice.get_by_role("button", name="OK").click()
+    expect(notice).to_have_count(0)

@@ -30,7 +30,7 @@ RATE_HZ = 1.0  # of the messages of one of the crowd
 DOWN, RESCUER = "FF-01", "FF-02"
 NAMES = {DOWN: "Jonas Bergman", RESCUER: "Mira Okafor"}
 CREWS = {DOWN: "Engine 1", RESCUER: "RIC"}
-SOUGHT = "Member 031"
+SOUGHT, SOUGHT_UNIT = "Member 031", unit_names(31)[-1]
 GUARD_MS = 600  # a list takes no press of somebody who meant what stood there before
 START = {"north_m": -6.0, "east_m": 12.0, "std_m": 0.3, "heading_std_rad": 0.05}
 
@@ -176,9 +176,11 @@ def test_par_of_a_member_in_alarm_takes_three_presses(incident: Incident, tmp_pa
 def test_member_is_found_without_a_press(incident: Incident) -> None:
     page = incident.page
     presses = Presses(page)
+    expect(page.get_by_role("dialog")).to_have_count(0)
     page.keyboard.press("/")
+    expect(page.get_by_role("searchbox")).to_be_focused()
     page.keyboard.type(SOUGHT)
-    expect(page.locator(".card").filter(has_text=SOUGHT)).to_be_visible()
+    expect(page.locator(f"[data-unit='{SOUGHT_UNIT}']")).to_be_in_viewport()
     page.keyboard.press("Escape")
     assert presses.count() == 0
 

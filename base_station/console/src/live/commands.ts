@@ -36,6 +36,12 @@ export function stands(command: CommandView): boolean {
   return command.kind === "evacuate" && command.ended_ms === null;
 }
 
+/** Orders that are open or stand, an evacuation first, then the newest. */
+export function underWay(commands: Iterable<CommandView>): CommandView[] {
+  const open = newestFirst(commands).filter((command) => command.open || stands(command));
+  return [...open.filter(stands), ...open.filter((command) => !stands(command))];
+}
+
 /** Members without an answer to an order that can be sent again. */
 export function unanswered(command: CommandView): DeliveryView[] {
   if (!command.asks_wearer || command.ended_ms !== null) return [];

@@ -11,6 +11,7 @@ export const order = {
   with_text: "{order}: {text}",
   locate_hint: "The unit signals its place with its outputs, such as a sounder or a light, until you or its wearer stop it.",
   evacuate_hint: "Orders everyone out at once. Each firefighter must acknowledge.",
+  more: "{count, plural, one {# more order} other {# more orders}}",
   par_hint: "Requests a PAR. Only the firefighter’s own answer counts.",
   text_hint: "Each firefighter must acknowledge.",
   everyone: "Everyone",

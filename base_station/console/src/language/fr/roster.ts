@@ -55,7 +55,7 @@ export const people_import: Part<"people_import"> = {
 export const par: Part<"par"> = {
   overdue_count: "{count, plural, one {# PAR} other {# PAR}} en retard",
   due: "PAR dû dans {time}",
-  due_header: "PAR dans {time}",
+  due_header: "PAR {time}",
   due_short: "PAR {time}",
   unconfirmed_count: "{count, number} à confirmer",
   state: "PAR {state}",
