@@ -83,6 +83,7 @@ describe("a search", () => {
     expect(ids({ part: "rehab" })).toEqual(["FF-02"]);
     expect(ids({ part: "on_scene", text: "Engine 2" })).toEqual(["FF-01", "FF-04"]);
     expect(ids({ part: "rehab", always: "FF-04" })).toEqual(["FF-02", "FF-04"]);
+    expect(ids({ part: "rehab", always: "FF-05" })).toEqual(["FF-02", "FF-05"]); // behind those found
     expect(ids({ text: "nobody has this name" })).toEqual([]);
   });
 });

@@ -23,7 +23,8 @@ function wordsOf(text: string): string[] {
   return text.toLocaleLowerCase().split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
 }
 
-/** Those places that are to be shown, in the order that they had. */
+/** Those places that are to be shown, in the order that they had; who is shown whatever is sought stands behind those
+ * that were found, for the card of a chosen member may fill the list. */
 export function sought(places: readonly Place[], units: readonly UnitView[], { text, part, always }: Sought): Place[] {
   if (text.trim() === "" && part === null) return [...places];
   const members = part === null ? units : onScene(units);
@@ -31,7 +32,8 @@ export function sought(places: readonly Place[], units: readonly UnitView[], { t
     .filter((unit) => part === null || part === "on_scene" || partOf(unit) === part)
     .filter((unit) => isFound(unit, text));
   const ids = new Set(found.map((unit) => unit.unit_id));
-  return places.filter(({ unitId }) => ids.has(unitId) || unitId === always);
+  const kept = places.filter(({ unitId }) => unitId === always && !ids.has(unitId));
+  return [...places.filter(({ unitId }) => ids.has(unitId)), ...kept];
 }
 
 export interface Group {

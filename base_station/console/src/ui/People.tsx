@@ -40,6 +40,8 @@ export function People({ picture }: { picture: Picture }) {
       if (!samePlaces(next, places.value)) places.value = next;
     }));
   });
+  const list = useRef<HTMLDivElement>(null);
+  useEffect(() => list.current?.scrollTo({ top: 0 }), [text.value]); // to who was found
   useEffect(() => showAll, [picture]); // a search does not carry over to another picture
   if (part.value !== null) void second.value; // people go in and out
   const shown = shownOf(places.value, picture);
@@ -75,7 +77,7 @@ export function People({ picture }: { picture: Picture }) {
         </ErrorBoundary>
         <LeftOut groups={shown} all={places.value.length} />
       </div>
-      <div class="people-list">
+      <div class="people-list" ref={list}>
         {places.value.length === 0 ? (
           <p class="nobody">
             {nobodyWords(picture)}
