@@ -29,7 +29,7 @@ from base_station.fusion.interface import (
 from base_station.fusion.kernels import HorizontalEstimate, OdometryIncrement
 from base_station.fusion.odometry.odometry_increments import OdometryIncrements
 from base_station.fusion.odometry.recent_path import RecentPath
-from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
+from base_station.fusion.odometry.run_changes import set_back_ns
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_estimates import PathEstimates
 from base_station.fusion.stated_noise import with_path_noise
@@ -116,34 +116,6 @@ class GpsInertialFuser(PathEstimates):
     def set_map(self, grid: FloorGrid | None) -> None:
         self._horizontal.set_map(grid)
 
-    def predict(self, position: Position, outage_s: float = 0.0) -> str:
-        memory, last = self._memory, self._memory.last
-        t_ns = position.header.t_mono_ns
-        if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart(last.header.t_mono_ns, t_ns, outage_s)
-            last = None
-        duration_s = 0.0
-        if last is not None:
-            duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
-            if duration_s < 0.0 and position.header.seq < last.header.seq:
-                return "older than the last position"
-            if duration_s < 0.0:
-                self._on_clock_set_back(t_ns)
-        self._set_path_noise(position.path_noise)
-        if last is not None and (jumped_m := jump_m(self._kind, last, position, duration_s)):
-            self._horizontal.inflate_place(strayed_m(self._kind, jumped_m, duration_s) ** 2)
-            memory.last, memory.path = position, RecentPath()
-            memory.path.append(position)
-            memory.receiver.forget_path()
-            self._odometry.reset_to(position)
-            return "the unit's own path jumped"
-        increment = self._odometry.increment(position, max(duration_s, 0.0))
-        self._predict(increment, position.std_down_m)
-        self._horizontal.set_drift_std(increment.drift_radps)
-        memory.last = position
-        memory.path.append(position)
-        return ""
-
     def update_barometer(self, air: BarometricHeight) -> None:
         self._height.update_barometer(air)
 
@@ -180,6 +152,15 @@ class GpsInertialFuser(PathEstimates):
     def _place_before(self, north_m: float, east_m: float) -> HorizontalEstimate:
         return self._horizontal.estimate_before(north_m, east_m)
 
+    def _on_path_jump(self, strayed_var_m2: float, _position: Position, /) -> None:
+        self._horizontal.inflate_place(strayed_var_m2)
+        self._memory.receiver.forget_path()
+
+    def _advance(self, position: Position, duration_s: float) -> None:
+        increment = self._odometry.increment(position, duration_s)
+        self._predict(increment, position.std_down_m)
+        self._horizontal.set_drift_std(increment.drift_radps)
+
     def _predict(self, increment: OdometryIncrement, own_std_m: float) -> None:
         kind = self._kind
         path = (increment.north_m, increment.east_m, increment.moving_s, -increment.down_m)
@@ -195,7 +176,6 @@ class GpsInertialFuser(PathEstimates):
         self._memory.landmarks.add_increment(increment, down_m)
 
     def _set_path_noise(self, noise: PathNoise | None) -> None:
-        """The tracker of the unit states this noise from now on."""
         memory = self._memory
         if noise == memory.path_noise:
             return
@@ -206,7 +186,6 @@ class GpsInertialFuser(PathEstimates):
         self._fixes = GnssUpdater(kind, memory, self._horizontal, self._height)
 
     def _on_clock_set_back(self, t_mono_ns: int) -> None:
-        """Drop times of a unit's clock that had been ahead and was set back."""
         memory = self._memory
         memory.path = RecentPath()
         memory.wander_t_mono_ns = t_mono_ns
@@ -214,10 +193,7 @@ class GpsInertialFuser(PathEstimates):
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
     def _restart(self, last_ns: int, t_ns: int, outage_s: float) -> None:
-        """Begin a new run of the unit's program: its frame starts within the distance that the
-        wearer can have walked in ``outage_s``, with unknown heading. Ages of fixes are kept
-        whatever the unit's clock did.
-        """
+        # Ages of fixes are kept whatever the unit's clock did.
         self._previous_run = self._ended_run()
         memory, back_ns = self._memory, set_back_ns(last_ns, t_ns, outage_s)
         travel_std_m = max_travel_m(outage_s) / RADII_95

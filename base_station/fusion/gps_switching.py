@@ -31,7 +31,7 @@ from base_station.fusion.interface import (
 from base_station.fusion.kernels import HorizontalEstimate
 from base_station.fusion.odometry.odometry_increments import OdometryIncrements
 from base_station.fusion.odometry.recent_path import PathPoint, RecentPath
-from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
+from base_station.fusion.odometry.run_changes import set_back_ns
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.path_estimates import PathEstimates
 from base_station.fusion.stated_noise import with_path_noise
@@ -39,7 +39,6 @@ from base_station.fusion.vertical.height import HeightFilter, SavedHeight
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
-from shared.clock import NS_PER_S
 from shared.messages import Position
 from shared.path_noise import PathNoise
 
@@ -133,30 +132,6 @@ class GpsSwitchingFuser(PathEstimates):
     def set_map(self, grid: FloorGrid | None) -> None:
         """Walls are not part of the rule."""
 
-    def predict(self, position: Position, outage_s: float = 0.0) -> str:
-        kind, memory, last = self._kind, self._memory, self._memory.last
-        t_ns, duration_s = position.header.t_mono_ns, 0.0
-        if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart(last.header.t_mono_ns, t_ns, outage_s)
-            last = None
-        if last is not None:
-            duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
-            if duration_s < 0.0 and position.header.seq < last.header.seq:
-                return "older than the last position"
-            if duration_s < 0.0:
-                self._on_clock_set_back(t_ns)
-        self._set_path_noise(position.path_noise)
-        if last is not None and (jumped_m := jump_m(kind, last, position, duration_s)):
-            self._hold_place(strayed_m(kind, jumped_m, duration_s) ** 2, position)
-            self._odometry.reset_to(position)
-            memory.last, memory.path = position, RecentPath()
-            memory.path.append(position)
-            return "the unit's own path jumped"
-        self._predict(self._odometry, position, max(duration_s, 0.0))
-        memory.last = position
-        memory.path.append(position)
-        return ""
-
     def update_barometer(self, air: BarometricHeight) -> None:
         self._height.update_barometer(air)
 
@@ -209,6 +184,12 @@ class GpsSwitchingFuser(PathEstimates):
         last = self._memory.last
         return (0.0, 0.0) if last is None else (last.north_m, last.east_m)
 
+    def _on_path_jump(self, strayed_var_m2: float, position: Position, /) -> None:
+        self._hold_place(strayed_var_m2, position)
+
+    def _advance(self, position: Position, duration_s: float) -> None:
+        self._predict(self._odometry, position, duration_s)
+
     def _predict(self, odometry: OdometryIncrements, position: Position, duration_s: float) -> None:
         increment = odometry.increment(position, duration_s)
         self._memory.reckoning.predict(increment)
@@ -251,7 +232,6 @@ class GpsSwitchingFuser(PathEstimates):
         self._memory.course_from = None
 
     def _set_path_noise(self, noise: PathNoise | None) -> None:
-        """The tracker of the unit states this noise from now on."""
         memory = self._memory
         if noise == memory.path_noise:
             return
@@ -260,16 +240,12 @@ class GpsSwitchingFuser(PathEstimates):
         self._odometry = OdometryIncrements(self._kind, self._odometry.save())
 
     def _on_clock_set_back(self, t_mono_ns: int) -> None:
-        """Drop times of a unit's clock that had been ahead and was set back."""
         memory = self._memory
         memory.path, memory.course_from = RecentPath(), None
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
     def _restart(self, last_ns: int, t_ns: int, outage_s: float) -> None:
-        """Begin a new run of the unit's program: its frame starts within the distance that the
-        wearer can have walked in ``outage_s``, with unknown heading.
-        """
         self._previous_run = self._ended_run()
         memory, kind = self._memory, self._kind
         travel_std_m = max_travel_m(outage_s) / RADII_95
