@@ -8,12 +8,10 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from base_station.app import folder_commands
-from tests.e2e.conftest import log_in
+from tests.e2e.closed_incident import logged_in_page, station_after_incident
 from tests.e2e.console_page import barriers, close, menu
 from tests.e2e.language_checks import english_on
 from tests.e2e.station_process import StationProcess
-from tests.rig.reported_incident import write_log
 from tests.rig.resting_person import resting_person
 
 
@@ -21,22 +19,15 @@ from tests.rig.resting_person import resting_person
 def station(
     chromium: Browser, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[StationProcess]:
-    """It runs on the folder of an incident that was closed long ago."""
-    data = tmp_path_factory.mktemp("rehearsed") / "station"
-    write_log(data, resting_person(30.0).records)
-    folder_commands.rebuild(data, lambda _: None)
-    station = StationProcess(data)
-    station.start()
-    yield station
-    station.stop()
+    folder = tmp_path_factory.mktemp("rehearsed")
+    with station_after_incident(folder, resting_person(30.0).records) as station:
+        yield station
 
 
 @pytest.fixture
 def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
-    page = chromium.new_page(viewport={"width": 1280, "height": 1000}, reduced_motion="reduce")
-    log_in(page, station)
-    yield page
-    page.close()
+    with logged_in_page(chromium, station) as page:
+        yield page
 
 
 def test_thresholds_are_rehearsed_over_a_closed_incident(page: Page) -> None:

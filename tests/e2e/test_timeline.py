@@ -9,12 +9,11 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from base_station.app import folder_commands
 from shared.clock import NS_PER_MS
-from tests.e2e.conftest import log_in
+from tests.e2e.closed_incident import logged_in_page, station_after_incident
 from tests.e2e.console_page import barriers, close, menu, press
 from tests.e2e.station_process import StationProcess
-from tests.rig.reported_incident import incident_records, write_log
+from tests.rig.reported_incident import incident_records
 from tests.rig.station_script import START_NS
 
 START_MS = START_NS // NS_PER_MS
@@ -33,22 +32,15 @@ STRIPS = (
 def station(
     chromium: Browser, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[StationProcess]:
-    """It runs on the folder of an incident that was closed long ago."""
-    data = tmp_path_factory.mktemp("timeline") / "station"
-    write_log(data, incident_records())
-    folder_commands.rebuild(data, lambda _: None)
-    station = StationProcess(data)
-    station.start()
-    yield station
-    station.stop()
+    folder = tmp_path_factory.mktemp("timeline")
+    with station_after_incident(folder, incident_records()) as station:
+        yield station
 
 
 @pytest.fixture
 def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
-    page = chromium.new_page(viewport={"width": 1280, "height": 1000}, reduced_motion="reduce")
-    log_in(page, station)
-    yield page
-    page.close()
+    with logged_in_page(chromium, station) as page:
+        yield page
 
 
 def open_timeline(page: Page, unit_id: str) -> Locator:

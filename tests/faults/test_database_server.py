@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
 
 import httpx
 import pytest
@@ -32,9 +31,8 @@ from base_station.storage.projection_mark import ProjectionMark
 from shared.errors import DatabaseAwayError, StoreError
 from tests.rig.database_server import DatabaseServer, database_server
 from tests.rig.projected_story import STORY
-from tests.rig.served_station import MakePosition, greet, prepare
-from tests.rig.station_command import Browser, Command, Unit
-from tests.rig.station_process import free_port
+from tests.rig.served_station import MakePosition, Served, served_station
+from tests.rig.station_command import Command
 from tests.rig.waiting import PATIENCE_S, until
 from tests.rig.watched_walk import Walk, logged, login, post
 
@@ -53,31 +51,14 @@ def address(server: DatabaseServer, tmp_path: Path) -> ServerAddress:
     return server.new_database(tmp_path)
 
 
-class Served(NamedTuple):
-    station: Command
-    browser: Browser
-    unit: Unit
-    data: Path
-    flags: tuple[str, ...]  # to serve it again
-
-
 @pytest.fixture
 def served(address: ServerAddress, tmp_path: Path, make_position: MakePosition) -> Iterator[Served]:
-    data, port = tmp_path / "station", free_port()
     settings = tmp_path / "station.toml"
     lines = (f'database = "{address.url}"', f'database_password_file = "{address.password_file}"')
     settings.write_text("\n".join(lines))
-    listens = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
-    with ExitStack() as closing:
-        flags = ("serve", "--config", str(settings), "--data", str(data), *listens)
-        station = Command(tmp_path / "output.txt", *flags)
-        closing.callback(station.kill)
-        browser = closing.enter_context(Browser(station.wait_ready(), data))
-        unit = Unit(port, "FF-01")
-        closing.callback(unit.close)
-        prepare(browser)
-        greet(browser, unit, make_position)
-        yield Served(station, browser, unit, data, flags)
+    data, output = tmp_path / "station", tmp_path / "output.txt"
+    with served_station(data, output, make_position, "--config", str(settings)) as served:
+        yield served
 
 
 def rows(store: Database, table: type[Base]) -> list[str]:

@@ -9,16 +9,14 @@ import signal
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
 
 import httpx
 import psutil
 import pytest
 
 from tests.rig.hanging_disk import disk_that_can_hang, frozen
-from tests.rig.served_station import MakePosition, greet, prepare
-from tests.rig.station_command import Browser, Command, Unit
-from tests.rig.station_process import free_port
+from tests.rig.served_station import MakePosition, Served, served_station
+from tests.rig.station_command import Command
 from tests.rig.waiting import PATIENCE_S, until
 from tests.rig.watched_walk import Walk, logged, login, post
 
@@ -34,30 +32,10 @@ def disk(tmp_path: Path) -> Iterator[Path]:
         yield place
 
 
-class Served(NamedTuple):
-    """A station whose data lies on the disk, a console of it, and a unit that it hears."""
-
-    station: Command
-    browser: Browser
-    unit: Unit
-    data: Path
-    flags: tuple[str, ...]  # to serve it again
-
-
 @pytest.fixture
 def served(disk: Path, tmp_path: Path, make_position: MakePosition) -> Iterator[Served]:
-    data, port = disk / "station", free_port()
-    listens = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
-    flags = ("serve", "--data", str(data), *listens)
-    with ExitStack() as closing:
-        station = Command(tmp_path / "output.txt", *flags)
-        closing.callback(station.kill)
-        browser = closing.enter_context(Browser(station.wait_ready(), data))
-        unit = Unit(port, "FF-01")
-        closing.callback(unit.close)
-        prepare(browser)
-        greet(browser, unit, make_position)
-        yield Served(station, browser, unit, data, flags)
+    with served_station(disk / "station", tmp_path / "output.txt", make_position) as served:
+        yield served
 
 
 def test_station_with_a_hanging_disk_continues_and_loses_nothing(

@@ -4,17 +4,49 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from shared.messages import Position
-from tests.rig.station_command import Browser, Unit
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 
 MakePosition = Callable[..., Position]
+
+
+class Served(NamedTuple):
+    """A station as a process, a console of it, and a unit that it receives."""
+
+    station: Command
+    browser: Browser
+    unit: Unit
+    data: Path
+    flags: tuple[str, ...]  # to serve it again
+
+
+@contextmanager
+def served_station(
+    data: Path, output: Path, make_position: MakePosition, *options: str
+) -> Iterator[Served]:
+    """Such a station on the folder; Ada wears the unit FF-01 in an open incident."""
+    port = free_port()
+    listens = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
+    flags = ("serve", *options, "--data", str(data), *listens)
+    with ExitStack() as closing:
+        station = Command(output, *flags)
+        closing.callback(station.kill)
+        browser = closing.enter_context(Browser(station.wait_ready(), data))
+        unit = Unit(port, "FF-01")
+        closing.callback(unit.close)
+        prepare(browser)
+        greet(browser, unit, make_position)
+        yield Served(station, browser, unit, data, flags)
 
 
 def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import msgspec
 
@@ -10,6 +12,7 @@ from base_station.engine.ports import Trails
 from base_station.replay.player import Player
 from base_station.storage.db.known_people import KnownPerson
 from base_station.views.wire import ReplayView, Snapshot, TrailPoint
+from tests.rig.waiting import PATIENCE_S
 
 VIEW = ReplayView("i1", 0, 0, 0, 1.0, playing=False)
 
@@ -23,6 +26,26 @@ def shown_at(player: Player, t_ns: int) -> tuple[dict[str, Any], dict[str, list[
         pass
     assert not player.is_lost
     return plain(*player.snapshot(VIEW))
+
+
+class SnapshotSource(Protocol):
+    """A replay, in this process or in one of its own."""
+
+    def request_snapshot(self, take: Callable[[Snapshot, Trails], None], /) -> None: ...
+
+
+def requested_snapshot(replay: SnapshotSource) -> Snapshot:
+    """The snapshot that the replay gives on request, waiting for it."""
+    found: list[Snapshot] = []
+    came = threading.Event()
+
+    def take(snapshot: Snapshot, _: Trails) -> None:
+        found.append(snapshot)
+        came.set()
+
+    replay.request_snapshot(take)
+    assert came.wait(PATIENCE_S)
+    return found[0]
 
 
 def plain(snapshot: Snapshot, trails: Trails) -> tuple[dict[str, Any], dict[str, list[TrailPoint]]]:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from base_station.engine.ports import Trails
 from base_station.replay.playback import Playback
 from base_station.replay.record_gaps import RecordGap
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.known_people import person_lookup
-from base_station.views.wire import GapView, Snapshot
+from base_station.views.wire import GapView
 from shared.clock import NS_PER_MS, NS_PER_S, SystemClock
 from tests.rig.live_station import Screen
 from tests.rig.logged_walk import archive, walk_with_mayday
+from tests.rig.shown_replay import requested_snapshot
 from tests.rig.station_script import START_NS, Record
 from tests.rig.waiting import until
 
@@ -103,23 +102,10 @@ def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
     session.close()
 
 
-def picture(session: ReplaySession) -> Snapshot:
-    found: list[Snapshot] = []
-    came = threading.Event()
-
-    def take(snapshot: Snapshot, _: Trails) -> None:
-        found.append(snapshot)
-        came.set()
-
-    session.request_snapshot(take)
-    assert came.wait(10.0)
-    return found[0]
-
-
 def test_seek_into_a_gap_is_reported(session: ReplaySession) -> None:
     session.pause()
     session.seek(at(97.7))
-    seen = picture(session)
+    seen = requested_snapshot(session)
     assert seen.now_ms == at(97.7) // NS_PER_MS
     assert [unit.link for unit in seen.units] == ["lost"]
     assert seen.replay is not None
@@ -134,5 +120,5 @@ def test_replay_plays_through_a_gap(session: ReplaySession, screen: Screen) -> N
     links = [unit.link for one in inside for unit in one.units]
     assert links.index("stale") < links.index("lost")
     assert session.view().gap is None
-    (unit,) = picture(session).units
+    (unit,) = requested_snapshot(session).units
     assert unit.link == "live"

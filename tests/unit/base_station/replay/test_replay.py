@@ -11,7 +11,6 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.engine.ports import Trails
 from base_station.replay.playback import BURST, Archive
 from base_station.replay.session import MOST_FLAWS, ReplaySession, ReplayWindow
 from base_station.storage.checkpoints import Checkpoints
@@ -26,6 +25,7 @@ from tests.rig import message_factory
 from tests.rig.console_log import reader, with_console
 from tests.rig.live_station import Screen, make_pipeline
 from tests.rig.logged_walk import DURATION_S, MAYDAY_S, archive, walk_with_mayday
+from tests.rig.shown_replay import requested_snapshot
 from tests.rig.station_script import START_NS, Record, Script
 from tests.rig.waiting import until
 
@@ -51,19 +51,6 @@ def session(source: Archive, screen: Screen) -> Iterator[ReplaySession]:
     session.close()
 
 
-def picture(session: ReplaySession) -> Snapshot:
-    found: list[Snapshot] = []
-    came = threading.Event()
-
-    def take(snapshot: Snapshot, _: Trails) -> None:
-        found.append(snapshot)
-        came.set()
-
-    session.request_snapshot(take)
-    assert came.wait(10.0)
-    return found[0]
-
-
 def at_s(session: ReplaySession) -> float:
     return session.view().at_ms / 1e3 - START_NS / NS_PER_S
 
@@ -78,7 +65,7 @@ def test_seeking_forth_and_back_shows_that_instant(session: ReplaySession) -> No
     session.pause()
     for second in (100, 30, 119, 61):
         session.seek(START_NS + second * NS_PER_S)
-        seen = picture(session)
+        seen = requested_snapshot(session)
         assert seen.replay is not None
         assert seen.replay.at_ms == START_NS // 10**6 + second * 1000
         assert north_m(seen) == pytest.approx(second - 1.0)
@@ -116,14 +103,14 @@ def test_lost_archive_stops_the_replay_which_continues_when_it_is_back(
         session.seek(START_NS + 100 * NS_PER_S)
         until(lambda: session.view().flaws == ("the archive is away",))
         assert not session.view().playing
-        assert north_m(picture(session)) < 20.0, "it shows what it has"
+        assert north_m(requested_snapshot(session)) < 20.0, "it shows what it has"
         session.play()
         until(lambda: not session.view().playing, "it was asked in vain")
         away.clear()
         session.play()
         until(lambda: session.view().flaws == ())
         assert session.view().playing
-        assert north_m(picture(session)) == pytest.approx(99.0, abs=10.0)
+        assert north_m(requested_snapshot(session)) == pytest.approx(99.0, abs=10.0)
     finally:
         session.close()
 
@@ -183,7 +170,7 @@ def test_messages_of_once_a_second_are_replayed(tmp_path: Path, screen: Screen) 
     until(lambda: at_s(session) == 85.0)
     clock.advance(1.0)
     until(lambda: at_s(session) == 86.0)
-    picture(session)
+    requested_snapshot(session)
     session.close()
     reported = [delta.trails["FF-01"] for delta in screen.deltas if delta.trails]
     assert reported
@@ -211,7 +198,7 @@ def test_replay_states_its_span_and_stays_within(session: ReplaySession) -> None
     session.pause()
     session.seek(START_NS - 50 * NS_PER_S)
     assert at_s(session) == 0.0
-    (unit,) = picture(session).units
+    (unit,) = requested_snapshot(session).units
     assert unit.position is None
 
 
@@ -227,9 +214,9 @@ def test_seek_to_the_end_by_milliseconds_is_at_the_end_and_play_begins_again(
     session = ReplaySession(source, window, 1.0, screen, person_lookup({}), ManualClock())
     session.pause()
     session.seek(session.view().end_ms * NS_PER_MS)
-    incident = picture(session).incident
+    incident = requested_snapshot(session).incident
     session.play()
-    picture(session)
+    requested_snapshot(session)
     again_s = at_s(session)
     session.close()
     assert incident is not None
@@ -247,7 +234,7 @@ def test_pace_is_the_requested_speed(tmp_path: Path, screen: Screen) -> None:
     clock.advance(1.0)
     until(lambda: at_s(session) == 32.0)
     session.pause()
-    picture(session)
+    requested_snapshot(session)
     reported = len(screen.deltas)
     threading.Event().wait(0.3)
     assert at_s(session) == 32.0
@@ -295,7 +282,7 @@ def test_long_seek_is_not_played_afterwards(tmp_path: Path, screen: Screen) -> N
     until(lambda: len(screen.resets) == 1)
     session.seek(START_NS + MAYDAY_S * NS_PER_S)
     until(lambda: len(screen.resets) == 2)
-    picture(session)
+    requested_snapshot(session)
     sought_s, clock_s = at_s(session), clock.monotonic_ns() / NS_PER_S
     session.close()
     assert clock_s > 10.0
@@ -347,7 +334,7 @@ def test_endless_seek_is_given_up_for_another_and_for_closing(
         before = read
         session.seek(window.end_ns)
         until(lambda: read > before + 2 * BURST)
-        joining = picture(session).replay
+        joining = requested_snapshot(session).replay
         assert joining is not None
         assert joining.seeking
 
@@ -359,7 +346,7 @@ def test_endless_seek_is_given_up_for_another_and_for_closing(
     session.pause()
     under_way()
     session.seek(START_NS + 10 * NS_PER_S)
-    until(lambda: picture(session).now_ms == START_NS // 10**6 + 10_000)
+    until(lambda: requested_snapshot(session).now_ms == START_NS // 10**6 + 10_000)
     under_way()
     session.close()
     assert session.is_over
@@ -374,13 +361,13 @@ def test_resumed_replay_continues_from_its_pause(tmp_path: Path, screen: Screen)
     )
     session.pause()
     session.seek(START_NS + 40 * NS_PER_S)
-    picture(session)
+    requested_snapshot(session)
     clock.advance(30.0)
-    picture(session)
+    requested_snapshot(session)
     paused_s = at_s(session)
     clock.advance(30.0)
     session.play()
-    picture(session)
+    requested_snapshot(session)
     resumed_s = at_s(session)
     clock.advance(10.0)
     until(lambda: at_s(session) >= 50.0)
@@ -400,7 +387,7 @@ def test_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
     session = ReplaySession(
         archive([], tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
     )
-    assert picture(session).units == ()
+    assert requested_snapshot(session).units == ()
     session.close()
 
 
@@ -429,19 +416,19 @@ def test_person_erased_meanwhile_is_shown_no_more(
     session.seek(START_NS + 100 * NS_PER_S)
     if not playing:
         session.pause()
-    assert [alarm.text for alarm in picture(session).alarms] == ["Mayday from Ada"]
+    assert [alarm.text for alarm in requested_snapshot(session).alarms] == ["Mayday from Ada"]
     clock.advance(2.0)
-    assert picture(session).alarms != (), "what stays as it was is not read again"
+    assert requested_snapshot(session).alarms != (), "what stays as it was is not read again"
     began = len(screen.resets)
     log[:] = [(t_ns, key, payload.replace(b"Ada", b"Eve")) for t_ns, key, payload in log]
     changed[0] = next(changes)
     clock.advance(2.0)
     until(lambda: len(screen.resets) > began, "everybody begins anew")
-    shown = picture(session)
+    shown = requested_snapshot(session)
     assert [alarm.text for alarm in shown.alarms] == ["Mayday from Eve"]
     assert at_s(session) >= 100.0 if playing else at_s(session) == 100.0
     clock.advance(2.0)
-    picture(session)
+    requested_snapshot(session)
     assert len(screen.resets) == began + 1, "once"
     session.close()
 
@@ -503,7 +490,7 @@ def test_replay_continues_where_a_change_of_the_past_cannot_be_checked(
     for looked in range(1, 4):
         clock.advance(2.0)
         until(lambda n=looked: len(looks) >= n)  # type: ignore[misc]
-    picture(session)
+    requested_snapshot(session)
     assert not session.is_over
     session.close()
 
@@ -516,7 +503,7 @@ def test_replay_reports_differences_of_its_log(tmp_path: Path, screen: Screen) -
     session = ReplaySession(source, window, 1.0, screen, person_lookup({}), SystemClock())
     try:
         flaws.append("a part of the log cannot be read")
-        shown = picture(session).replay
+        shown = requested_snapshot(session).replay
         assert shown is not None
         assert shown.flaws == tuple(flaws)
         flaws.extend(f"part {number}" for number in range(1000))

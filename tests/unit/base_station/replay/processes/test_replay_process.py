@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -31,6 +30,7 @@ from shared.errors import UserError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, segment_paths
 from tests.rig.live_station import Screen
 from tests.rig.logged_walk import DURATION_S, MAYDAY_S, logged, north, walk_with_mayday
+from tests.rig.shown_replay import requested_snapshot
 from tests.rig.station_script import START_NS
 from tests.rig.waiting import until
 
@@ -89,19 +89,6 @@ def replay(place: ReplayContext, screen: EncodedScreen) -> Iterator[ReplayProces
     replay.close()
 
 
-def picture(replay: ReplayProcess) -> Snapshot:
-    found: list[Snapshot] = []
-    came = threading.Event()
-
-    def take(snapshot: Snapshot, _: Trails) -> None:
-        found.append(snapshot)
-        came.set()
-
-    replay.request_snapshot(take)
-    assert came.wait(WAIT_S)
-    return found[0]
-
-
 def has_begun_again(screen: EncodedScreen, count: int) -> bool:
     """More restarts than this number."""
     return len(screen.resets) > count
@@ -127,7 +114,7 @@ def test_consoles_get_the_same_as_from_a_replay_in_this_process(
         replay.seek(START_NS + second * NS_PER_S)
         assert replay.view().at_ms == START_NS // NS_PER_MS + second * 1000  # at once
         until(partial(has_begun_again, screen, count), "the place is shown", WAIT_S)
-        seen = picture(replay)
+        seen = requested_snapshot(replay)
         (unit,) = seen.units
         assert unit.position is not None
         assert unit.position.north_m == pytest.approx(second - 1.0)
@@ -157,7 +144,7 @@ def test_consoles_see_a_loading_replay_before_its_process_is_ready(
 ) -> None:
     with ReplayProcesses() as fresh:
         replay = ReplayProcess(replace(place, processes=fresh), WINDOW, 1.0, screen)
-        seen = picture(replay)
+        seen = requested_snapshot(replay)
         assert seen.replay is not None
         assert seen.replay.seeking
         assert replay.view().seeking
@@ -186,7 +173,7 @@ def test_killed_replay_is_over_and_another_can_be_begun(
     copied.kill()  # the one that others are copied from, too
     until(lambda: not _goes_on(copied), "it has ended", WAIT_S)
     other = ReplayProcess(place, WINDOW, 1.0, screen)
-    assert picture(other).replay is not None
+    assert requested_snapshot(other).replay is not None
     until(lambda: len(screen.resets) > 1, "the other one is shown", WAIT_S)
     other.close()
     until(lambda: not working(processes), "its process has ended", WAIT_S)
