@@ -1,1 +1,3 @@
-"""Archive of incidents on a disk or in a bucket, from which they are shown without all of them."""
+"""Archive of incidents on a disk or in a bucket.  An incident can be shown from it without fetching
+all of it.
+"""

@@ -1,4 +1,6 @@
-"""Files and audio that a copy in an archive has beside its log, fetched when they are read."""
+"""Imported files and audio that a copy in an archive has beside its log, fetched when they are
+read.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ _PART_BYTES = 4 << 20
 
 
 class ArchivedImports(ImportFolder):
-    """Files that were brought in.  Raises ArchiveError where the archive does not answer."""
+    """Imported files.  Raises ArchiveError if the archive does not answer."""
 
     def __init__(self, path: Path, store: ArchiveStore, entry: CatalogueEntry) -> None:
         """``path``: where they are kept once they are fetched."""
@@ -47,7 +49,7 @@ class ArchivedRadio(RadioLog):
         self._store, self._entry = store, entry
 
     def channels(self) -> tuple[str, ...]:
-        """Raises ArchiveError where the archive does not answer."""
+        """Channels with audio.  Raises ArchiveError if the archive does not answer."""
         has_audio = any(one.name == RADIO_NAME for one in self._entry.files)
         if has_audio and not self.folder.is_dir():
             self._fetch()

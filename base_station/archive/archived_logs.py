@@ -1,4 +1,4 @@
-"""Finds the copies of incidents whose log the station has no more."""
+"""Finds the copies of incidents whose log is not at the station any more."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LATE_NS = 3600 * NS_PER_S  # a timeline includes backfilled data until this time
 
 @dataclass(frozen=True)
 class ArchivedLogs:
-    """From any thread."""
+    """Finder of copies.  Thread-safe."""
 
     copies: ArchivedCopies
     records: Records
@@ -35,9 +35,9 @@ class ArchivedLogs:
     known: Callable[[], Iterable[KnownSegment]]  # that there were, by the database
 
     def instead_of_log(self, incident: IncidentRow) -> ArchivedLog | None:
-        """None: the log is here, or no archive has a copy.
+        """Copy to use in place of the log; None if the log is here, or no archive has a copy.
 
-        Raises ArchiveError where the archive does not answer.
+        Raises ArchiveError if the archive does not answer.
         """
         if incident.closed_ns is None or self._is_here(incident.opened_ns, incident.closed_ns):
             return None
@@ -57,20 +57,24 @@ class ArchivedLogs:
         return ArchivedLog(location, encoded)
 
     def feed_of(self, incident: IncidentRow) -> LogFeed | None:
-        """None: as above.  Raises ArchiveError."""
+        """Feed of an incident's copy; None if the log is here, or no archive has a copy.  Raises
+        ArchiveError.
+        """
         archived = self.instead_of_log(incident)
         return None if archived is None else opened_copy(archived)
 
     def feed(self, own: LogFeed, from_ns: int, until_ns: int) -> RecordSource:
-        """The station's log between two times, wherever it is.  Raises ArchiveError."""
+        """Feed of the station's log between two times, wherever it is kept.  Raises
+        ArchiveError.
+        """
         parts = self.parts(from_ns, until_ns)
         return partly_archived(own, parts) if parts else own
 
     def parts(self, from_ns: int, until_ns: int) -> tuple[ArchivedPart, ...]:
-        """Incidents between two station times whose log is not here, and of which an archive has a
-        copy; the oldest first.  With what journals brought later, where that is not here either.
+        """Copies of incidents between two station times whose log is not here, oldest first; with
+        what journals delivered later, if that is not here either.
 
-        Raises ArchiveError where the archive does not answer.
+        Raises ArchiveError if the archive does not answer.
         """
         if self._is_here(from_ns, until_ns):
             return ()
@@ -93,7 +97,9 @@ class ArchivedLogs:
         )
 
     def _is_here(self, from_ns: int, until_ns: int) -> bool:
-        """All segments that have something of the time; where the database knows of none, one."""
+        """True if all segments with records of the time are here; if the database knows of none,
+        one is enough.
+        """
         here = {one.path.name: one for one in self.segments()}
         there_were = names_between(self.known(), from_ns, until_ns)
         if there_were:

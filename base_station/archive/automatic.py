@@ -1,8 +1,8 @@
 """Copies of closed incidents that the station makes by itself.
 
-The work is done by a process of its own, which reads back what it has written.  Due incidents are
-in the database, so that a restart loses none; while the archive is away it is tried again after
-pauses that grow.
+A process of its own does the work, and reads back what it has written.  Due incidents are in the
+database, so that a restart loses none.  While the archive cannot be reached, the work is tried
+again after pauses that grow.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class ArchivingContext:
-    """Parts of the station that it needs."""
+    """Parts of the station on which the work depends."""
 
     start: Callable[[jobs.ArchiveJob], frame_channel.FrameChannel]  # a process for it
     log: str
@@ -43,7 +43,7 @@ class ArchivingContext:
 
 
 class AutomaticArchive:
-    """Runs while it is entered; its state may be asked for from any thread."""
+    """Worker that runs while it is entered; any thread may ask for its state."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class AutomaticArchive:
         clock: Clock,
         poll_interval_s: float = POLL_INTERVAL_S,
     ) -> None:
-        """Raises ConfigError where a library is missing that the archive needs."""
+        """Raises ConfigError if the archive needs a library that is missing."""
         self._config, self._place = config, place
         self._address = open_store(config.location).address
         self._copies, self._clock = copies, clock
@@ -94,7 +94,7 @@ class AutomaticArchive:
             )
 
     def problems(self) -> Iterable[str]:
-        """A sentence for a person, where it has failed for long."""
+        """Sentence for a person if copying has failed for long."""
         with self._lock:
             since_ns, waiting, reason = self._away_since_ns, self._waiting, self._reason
         if since_ns is None:
@@ -112,15 +112,15 @@ class AutomaticArchive:
         return (text,)
 
     def keeps_audio_since_ns(self) -> int | None:
-        """Station time since when no audio may be deleted, as the archive is to have it and has it
-        not; None: all may be.  Raises StoreError.
+        """Station time from which on audio must not be deleted, because the archive does not have
+        it yet; None if all may be deleted.  Raises StoreError.
         """
         return self._copies.oldest_waiting_ns(self._address) if self._config.radio else None
 
     # ---- in the thread
 
     def _step(self) -> float:
-        """Copy due incidents; gives the pause after them."""
+        """Copy the due incidents, and return the pause after them."""
         if not self._place.leads():
             return self._poll_interval_s
         try:
@@ -134,7 +134,7 @@ class AutomaticArchive:
         return self._poll_interval_s
 
     def _copy(self) -> None:
-        """Raises ArchiveError or StoreError where it is not done."""
+        """Copy one incident.  Raises ArchiveError or StoreError if that fails."""
         self._place.prepare()
         line = self._begin()
         try:

@@ -1,7 +1,7 @@
-"""An archive in a bucket that speaks S3.
+"""Archive in a bucket, by the S3 protocol.
 
-Credentials are taken from the environment, as by other programs: AWS_ACCESS_KEY_ID,
-AWS_SECRET_ACCESS_KEY, AWS_REGION, and AWS_ENDPOINT_URL for another server than Amazon's.
+Credentials are read from the environment, as other programs do: AWS_ACCESS_KEY_ID,
+AWS_SECRET_ACCESS_KEY, AWS_REGION, and AWS_ENDPOINT_URL for a server other than Amazon's.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _CREDENTIALS = "AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY"
 
 class BucketStore:
     def __init__(self, address: str) -> None:
-        """Raises UserError where the address has no bucket."""
+        """Raises UserError if the address names no bucket."""
         parts = urlsplit(address)
         if not parts.hostname or parts.username or parts.query:
             raise UserError(
@@ -132,7 +132,9 @@ class BucketStore:
 
 
 def _is_on_this_machine(endpoint: str) -> bool:
-    """Names of people go to others encrypted alone."""
+    """True if the endpoint is this machine.  To another one names of people are sent only with
+    encryption.
+    """
     host = urlsplit(endpoint).hostname or ""
     try:
         return host == "localhost" or ip_address(host).is_loopback
@@ -141,6 +143,6 @@ def _is_on_this_machine(endpoint: str) -> bool:
 
 
 def _reason(error: Exception) -> str:
-    """The innermost reason, which comes last but for hints to developers."""
+    """Innermost reason of an error, which comes last but for hints to developers."""
     text = str(error).split("\n\nDebug source")[0]
     return text.strip().splitlines()[0][:300]

@@ -1,7 +1,7 @@
 """Entry of an incident in an archive: the file ``catalogue.json`` beside the copy.
 
-It is written last: a copy without it was cut short, and is made again.  A copy that replaces one
-has files of other names, so that writing the entry exchanges all of it at once.
+It is written last: a copy without it is incomplete, and is made again.  A copy that replaces
+another one has files of other names, so that writing the entry replaces all of it at once.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
     damage: tuple[str, ...] = ()  # unreadable parts of the station's log, in words
 
     def file(self, name: str) -> ArchivedFile:
-        """Raises ArchiveError where the entry has no file of this name."""
+        """Entry of a file.  Raises ArchiveError if there is no file of this name."""
         for one in self.files:
             if one.name == name:
                 return one
@@ -58,7 +58,7 @@ def name_in_archive(incident_id: str, name: str) -> str:
 
 
 def stored_apart(entry: CatalogueEntry) -> CatalogueEntry:
-    """With files that do not replace those of the copy that is there."""
+    """The entry with names of files that do not replace those of the present copy."""
     files = []
     for one in entry.files:
         path = Path(one.name)
@@ -68,7 +68,7 @@ def stored_apart(entry: CatalogueEntry) -> CatalogueEntry:
 
 
 def obsolete_files(store: ArchiveStore, entry: CatalogueEntry) -> Sequence[str]:
-    """Files of an earlier copy of the incident that are still beside this one."""
+    """Files of an earlier copy of the incident that still exist beside this one."""
     own = {name_in_archive(entry.incident_id, one.stored_name) for one in entry.files}
     own.add(name_in_archive(entry.incident_id, ENTRY_NAME))
     return [one for one in store.names(f"{entry.incident_id}/") if one not in own]
@@ -79,7 +79,7 @@ def encoded_entry(entry: CatalogueEntry) -> bytes:
 
 
 def read_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry | None:
-    """None where there is no complete copy.  Raises ArchiveError."""
+    """Read the entry of an incident; None if there is no complete copy.  Raises ArchiveError."""
     name = name_in_archive(incident_id, ENTRY_NAME)
     encoded = store.read_all(name)
     if encoded is None:
@@ -88,7 +88,7 @@ def read_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry | None:
 
 
 def decoded_entry(encoded: bytes, where: str) -> CatalogueEntry:
-    """``where``: the archive and the name, for messages.  Raises ArchiveError."""
+    """Decode an entry.  ``where``: archive and name, for messages.  Raises ArchiveError."""
     try:
         entry = msgspec.json.decode(encoded, type=CatalogueEntry)
     except msgspec.MsgspecError as error:
@@ -105,7 +105,9 @@ def decoded_entry(encoded: bytes, where: str) -> CatalogueEntry:
 
 
 def require_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry:
-    """Raises ArchiveError, which names those that there are."""
+    """Read the entry of an incident.  Raises ArchiveError, which names the incidents that there
+    are.
+    """
     entry = read_entry(store, incident_id)
     if entry is None:
         known = ", ".join(archived_ids(store)) or "none"
@@ -116,12 +118,12 @@ def require_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry:
 
 
 def archived_ids(store: ArchiveStore) -> Sequence[str]:
-    """Incidents of which there is a complete copy."""
+    """Ids of incidents with a complete copy."""
     ends = f"/{ENTRY_NAME}"
     return sorted(one.removesuffix(ends) for one in store.names() if one.endswith(ends))
 
 
 def unfinished_ids(store: ArchiveStore) -> Sequence[str]:
-    """Incidents of which there are files without an entry: the copy was cut short."""
+    """Ids of incidents with files but without an entry, whose copy is incomplete."""
     there = {one.partition("/")[0] for one in store.names() if "/" in one}
     return sorted(there - set(archived_ids(store)))

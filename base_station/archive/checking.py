@@ -1,4 +1,4 @@
-"""Check of an archive against its own checksums; and copies brought back from it."""
+"""Check of an archive against its own checksums, and fetching of copies from it."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _PART_BYTES = 4 << 20
 def defects_of(
     store: ArchiveStore, on_progress: Callable[[float], None]
 ) -> Iterator[tuple[str, str]]:
-    """Incident and the faults of its copy, in words; reads all of the archive.
+    """Incidents with the faults of their copies as sentences; reads the whole archive.
 
-    Raises ArchiveError where the archive does not answer.
+    Raises ArchiveError if the archive does not answer.
     """
     for incident_id in unfinished_ids(store):
         yield incident_id, "the copy was cut short: it is made again with the next one"
@@ -48,7 +48,7 @@ def defects_of(
 
 
 def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
-    """Fault of a file in words, after reading all of it; empty: none."""
+    """Fault of a file as a sentence, after reading all of it; empty if there is none."""
     name = name_in_archive(entry.incident_id, file.stored_name)
     size = store.size(name)
     if size != file.size_bytes:
@@ -65,9 +65,9 @@ def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) ->
 def fetch_log(
     store: ArchiveStore, entry: CatalogueEntry, out: Path, on_progress: Callable[[float], None]
 ) -> None:
-    """Bring an incident back as one file that stands alone, whole or not at all.
+    """Fetch an incident as one file that stands alone, complete or not at all.
 
-    Raises ArchiveError where it is not as it was written.
+    Raises ArchiveError if it is not as it was written.
     """
     file = entry.file(LOG_NAME)
     digest = hashlib.sha256()

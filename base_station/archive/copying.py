@@ -1,4 +1,4 @@
-"""Copies of incidents into an archive: those missing there, or with newer data since."""
+"""Copies of incidents into an archive: of those that it lacks, and of those with newer data."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ _WAITING_BYTES = 1 << 20
 
 
 def closed_until_ns(clock: Clock) -> int:
-    """Station time before which an incident was closed that can be copied."""
+    """Station time before which an incident must have been closed to be copied."""
     return clock.utc_ns() - AFTER_NS - _FLUSHED_NS
 
 
@@ -94,7 +94,7 @@ class _CopySource:
 
 
 class _LogGoneError(ArchiveError):
-    """A copy cannot be made again without the log; the archived copy must not be replaced."""
+    """A copy cannot be made again without the log, so the archived copy must not be replaced."""
 
 
 class ArchiveCopier:
@@ -107,7 +107,7 @@ class ArchiveCopier:
         imports: ImportFolder,
         radio: RadioLog | None = None,
     ) -> None:
-        """``radio``: None: without audio of the radio channels."""
+        """``radio``: None to copy without the audio of the radio channels."""
         self._imports, self._radio = ImportCatalogue(store, imports), radio
         self._archive = archive
         self._store = store
@@ -116,12 +116,12 @@ class ArchiveCopier:
         self._copies = ArchivedCopies(store)
 
     def copy_due(self, on_progress: Callable[[float], None]) -> Iterator[CopyResult]:
-        """Copy due incidents, the oldest first; each is in the catalogue when its result comes.
-        An incident that was closed a minute ago waits: the log still has records of it to come.
+        """Copy due incidents, oldest first; each is in the catalogue when its result is yielded.
+        An incident that was closed a minute ago waits, as the log still receives records of it.
 
         A copy that is not in the archive any more is made again.
 
-        Raises ArchiveError: finished copies are there, and the rest is due still.
+        Raises ArchiveError: finished copies are there, and the rest is still due.
         """
         kept = list(self._note_lost_copies())
         due = self._copies.due(self._archive.address, closed_until_ns(self._clock))
@@ -135,9 +135,9 @@ class ArchiveCopier:
             raise ArchiveError(". ".join(kept))
 
     def _note_lost_copies(self) -> Iterator[str]:
-        """Copies that were written and are not there any more are due again; gives a sentence for
-        each that cannot be made again.  Raises ArchiveError where not one is left: it may be
-        another disk, and notes of the copies on the right one must stay.
+        """Make copies due again that were written and are not there any more; return a sentence for
+        each that cannot be made again.  Raises ArchiveError if not one is left: it may be another
+        disk, and the notes of the copies on the right one must stay.
         """
         noted = self._copies.copied_to(self._archive.address)
         there = set(archived_ids(self._archive)) if noted else set()
@@ -160,7 +160,7 @@ class ArchiveCopier:
                 )
 
     def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
-        """``known_ns``: station time of the newest that is known of it."""
+        """Copy an incident.  ``known_ns``: station time of the newest data known of it."""
         erased = erasures_done(self._store)  # before anything is read that they change
         there = read_entry(self._archive, incident.incident_id)
         own_id = self._log.log_id  # empty where all segments are gone
@@ -211,7 +211,7 @@ class ArchiveCopier:
     def _redacted(
         self, there: CatalogueEntry, subjects: ErasedSubjects, scratch: Path
     ) -> _CopySource:
-        """The copy itself, without data that came after it was made."""
+        """The archived copy without erased people, and without data that came after it was made."""
         try:
             log = redacted_log(self._archive, there, subjects, scratch / "redacted")
         except CopyIncompleteError as error:
@@ -225,7 +225,9 @@ class ArchiveCopier:
             self._archive.remove(name)
 
     def _is_current(self, entry: CatalogueEntry, incident: IncidentRow, known_ns: int) -> bool:
-        """A copy that this database lost sight of; not one from before a person was forgotten."""
+        """True for a current copy that this database does not know of; not for one from before an
+        erasure.
+        """
         here = self._mentioned(incident)
         return (
             entry.known_ns == known_ns
@@ -236,8 +238,8 @@ class ArchiveCopier:
         )
 
     def _is_noted(self, entry: CatalogueEntry) -> bool:
-        """True where these files were read back when they were written, and only an erasure has
-        outdated that.
+        """True if these files were read back when they were written, and only an erasure has made
+        them outdated.
         """
         if not self._copies.is_outdated_by_erasure(entry.incident_id):
             return False
@@ -250,7 +252,9 @@ class ArchiveCopier:
         return any(defect_of(self._archive, entry, one) for one in entry.files)
 
     def _has_log(self, incident: IncidentRow) -> bool:
-        """True if all segments of its time are here; where the database knows of none, a record."""
+        """True if all segments of its time are here; if the database knows of none, if there is a
+        record.
+        """
         from_ns, until_ns = incident.opened_ns, incident.closed_ns or FOREVER_NS
         known = known_segments_of(Records(self._store, self._clock))
         if there_were := names_between(known, from_ns, until_ns):
@@ -267,7 +271,7 @@ class ArchiveCopier:
         )
 
     def _send(self, entry: CatalogueEntry, scratch: Path) -> None:
-        """The entry goes last, when all was read there: a copy that is cut short has none."""
+        """Write the files and read them back, then the entry: an interrupted copy has none."""
         for one in entry.files:
             name = name_in_archive(entry.incident_id, one.stored_name)
             self._archive.put(name, scratch / one.name)
@@ -339,8 +343,8 @@ class ArchiveCopier:
 
 
 def write_topics(log: Path, target: Path, log_id: str, is_wanted: Callable[[str], bool]) -> None:
-    """Write some topics as a segment of its own: the chunks stand side by side, and one request
-    gives all of a time.
+    """Write some topics as a segment of its own.  Their chunks lie side by side, so that one
+    request returns all of them for a span of time.
     """
     topics: Mapping[str, int]
     with SegmentReader(log) as reader:

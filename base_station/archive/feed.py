@@ -1,4 +1,4 @@
-"""The log of an archived incident, read in place: only requested parts are fetched."""
+"""Log of an archived incident, read in place: only requested parts are fetched."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from shared.mcap_log import (
 
 
 class ArchivedFeed(LogFeed):
-    """Reading raises ArchiveError where the archive does not answer."""
+    """Feed of a copy.  Reading raises ArchiveError if the archive does not answer."""
 
     def __init__(
         self,
@@ -29,7 +29,7 @@ class ArchivedFeed(LogFeed):
         log_id: str,
         on_damage: Callable[[str], object] = lambda _: None,
     ) -> None:
-        """``files``: of the catalogue, by name."""
+        """``files``: entries of the catalogue, by name."""
         self._on_damage = on_damage
         self._store, self._incident_id, self._files_by_name = store, incident_id, files
         self._console = _ranged(store, incident_id, files[CONSOLE_NAME])
@@ -63,7 +63,7 @@ class ArchivedFeed(LogFeed):
         return (record for record in found if channel_of_audio(record[1]) is None)
 
     def watch(self) -> Callable[[], bool]:
-        """A copy is never changed: it is replaced."""
+        """Return a function that is never True: a copy is not changed, but replaced."""
         return lambda: False
 
     def _read(

@@ -1,4 +1,6 @@
-"""Copies that may have people who were erased; the erasure is done when they are made anew."""
+"""Copies that may contain people who were erased.  An erasure is complete when they were made
+again.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from shared.coded_text import coded
 
 
 class OutdatedCopies:
-    """Problems of the station, from any thread, as they were at the last look."""
+    """Problems of outdated copies, as of the last refresh.  Thread-safe."""
 
     def __init__(
         self,
@@ -18,8 +20,8 @@ class OutdatedCopies:
         archive: Callable[[], ArchiveView | None],
         leads: Callable[[], bool],
     ) -> None:
-        """``archive``: the one to which the station copies; None: to none.  ``leads``: of two
-        stations one makes these copies anew.
+        """``archive``: the one to which the station copies; None if there is none.  ``leads``: of
+        two stations only the leading one makes copies again.
         """
         self._copies, self._archive, self._leads = copies, archive, leads
         self._by_address: dict[str, int] = {}
@@ -29,7 +31,7 @@ class OutdatedCopies:
         self._by_address = self._copies.outdated_by_erasure()
 
     def problems(self) -> tuple[str, ...]:
-        """A sentence for a person about each archive."""
+        """A sentence for a person about each archive with outdated copies."""
         own = self._archive()
         return tuple(
             _problem(address, count, own)

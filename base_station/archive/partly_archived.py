@@ -1,4 +1,4 @@
-"""A station's log of which some parts are in an archive alone: each part is read where it is."""
+"""Log of a station of which some parts are only in an archive: each part is read where it is."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from shared.mcap_log import LogRecord
 
 @dataclass(frozen=True)
 class OpenedPart:
-    """Station times, ``until_ns`` excluded."""
+    """Archived part of a log, between station times; ``until_ns`` is excluded."""
 
     from_ns: int
     until_ns: int
@@ -26,10 +26,10 @@ class OpenedPart:
 
 
 class PartlyArchivedFeed:
-    """Reading raises ArchiveError where the archive does not answer."""
+    """Feed of all parts.  Reading raises ArchiveError if the archive does not answer."""
 
     def __init__(self, own: RecordSource, parts: Sequence[OpenedPart]) -> None:
-        """``parts``: in the order of time; of two that overlap the first is read."""
+        """``parts``: in time order; where two overlap, the first is read."""
         self._own, self._parts = own, parts
 
     def records(
@@ -51,7 +51,7 @@ class PartlyArchivedFeed:
 
 
 def opened_copy(archived: ArchivedLog, flaws: LogDefects | None = None) -> ArchivedFeed:
-    """``flaws`` receives unreadable parts.  Raises ArchiveError."""
+    """Open a copy.  ``flaws`` receives unreadable parts.  Raises ArchiveError."""
     entry, store = decoded_entry(archived.entry, archived.location), open_store(archived.location)
     files = {one.name: one for one in entry.files}
     if flaws is None:
@@ -71,7 +71,7 @@ def partly_archived(
 def without_archived(
     known: Collection[KnownSegment], parts: Sequence[ArchivedPart]
 ) -> tuple[KnownSegment, ...]:
-    """Segments without those whose incident is read in an archive."""
+    """Segments except those whose incident is read from an archive."""
     return tuple(
         segment
         for segment in known

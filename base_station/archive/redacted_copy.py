@@ -1,7 +1,7 @@
-"""Copies that have people who were erased since, and what is left of one without them.
+"""Redaction of copies: people who were erased since are removed from them.
 
-Where the station has no log of an incident any more, its copy is the only one: it is fetched, and
-rewritten as the station's log is.
+If the station does not have the log of an incident any more, its copy is the only one: it is
+fetched, and rewritten as the station's log is.
 """
 
 from __future__ import annotations
@@ -52,7 +52,9 @@ class ErasedSubjects(NamedTuple):
 
 
 def erased_in(archive: ArchiveStore, entry: CatalogueEntry, store: Database) -> ErasedSubjects:
-    """Those that were erased, and that a copy may have still.  Raises ArchiveError."""
+    """People and incidents that were erased and that a copy may still contain.  Raises
+    ArchiveError.
+    """
     until_ns = entry.closed_ns + AFTER_NS
     return ErasedSubjects(
         erasures_done(store).person_ids & _mentioned(archive, entry),
@@ -73,8 +75,8 @@ def redacted_log(
 ) -> FolderFeed:
     """The log of a copy without these, in a folder below ``scratch``.
 
-    Raises ArchiveError where the copy is not as it was written, CopyIncompleteError where it has a
-    part of an erased incident that was open beside it.
+    Raises ArchiveError if the copy is not as it was written, CopyIncompleteError if it contains a
+    part of an erased incident that was open at the same time.
     """
     folder = scratch / "log"
     make_folder(folder)

@@ -1,4 +1,4 @@
-"""Place of an archive: a folder of a disk, or a bucket that speaks S3."""
+"""Storage of an archive: a folder of a disk, or a bucket with the S3 protocol."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ BUCKET = "s3://"
 
 
 class ArchiveStore(Protocol):
-    """Named files.  Every method raises ArchiveError where the archive does not do it."""
+    """Storage of named files.  Every method raises ArchiveError if the storage fails."""
 
     @property
     def address(self) -> str:
-        """As a person gives it, without secrets."""
+        """Address as a person enters it, without secrets."""
         ...
 
     def put(self, name: str, content: Path) -> None:
-        """Store a file, whole or not at all."""
+        """Store a file, completely or not at all."""
         ...
 
     def size(self, name: str) -> int | None:
-        """None: there is no object of this name."""
+        """Size of an object; None if there is none of this name."""
         ...
 
     def read_all(self, name: str) -> bytes | None:
-        """Content of a small object, by one request; None: there is no object of this name."""
+        """Content of a small object, by one request; None if there is none of this name."""
         ...
 
     def read(self, name: str, begin: int, end: int) -> bytes:
@@ -47,7 +47,9 @@ class ArchiveStore(Protocol):
 
 
 def open_store(address: str) -> ArchiveStore:
-    """Raises UserError for an address of another kind, ConfigError where a library is missing."""
+    """Open a storage.  Raises UserError for an address of another kind, ConfigError if a library is
+    missing.
+    """
     if address.startswith(BUCKET):
         try:
             from base_station.archive.bucket import BucketStore  # noqa: PLC0415  # optional

@@ -1,4 +1,4 @@
-"""Formats in which an incident can be written.  A new format is a file and a line here."""
+"""Formats in which an incident can be exported.  A new format is a file and a line here."""
 
 from __future__ import annotations
 

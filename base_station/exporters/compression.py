@@ -11,7 +11,7 @@ _GZIP = 16 + zlib.MAX_WBITS  # its head instead of that of zlib: without a name 
 
 
 def gzipped(content: Iterable[bytes]) -> Iterator[bytes]:
-    """The same content gives the same bytes."""
+    """Compress a content; the same content gives the same bytes."""
     compressor = zlib.compressobj(_LEVEL, zlib.DEFLATED, _GZIP)
     for block in content:
         if part := compressor.compress(block):

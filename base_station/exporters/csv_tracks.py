@@ -1,4 +1,4 @@
-"""CSV: one row a point; places on the Earth where the site has an anchor."""
+"""CSV: one row for each point, with positions on the Earth if the site has an anchor."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _rows(track: WornTrack, anchor: Anchor | None) -> str:
 
 
 def _plain(text: str) -> str:
-    """A name must not become a formula in a spreadsheet."""
+    """Text that a spreadsheet does not take for a formula."""
     return f"'{text}" if text.startswith(_FORMULA_STARTS) else text
 
 

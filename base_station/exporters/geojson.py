@@ -1,5 +1,5 @@
-"""GeoJSON (RFC 7946): one line a wearer and known stretch of the way, ``[lon, lat, height]``, with
-the times beside it.
+"""GeoJSON (RFC 7946): one line for each wearer and known part of the way, ``[lon, lat, height]``,
+with the times beside it.
 """
 
 from __future__ import annotations

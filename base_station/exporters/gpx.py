@@ -1,5 +1,5 @@
-"""GPX 1.1: one ``trk`` a wearer, with a ``trkseg`` for each known stretch of the way; heights are
-above the ellipsoid.
+"""GPX 1.1: one ``trk`` for each wearer, with a ``trkseg`` for each known part of the way; heights
+are above the ellipsoid.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Collects an incident from the store for the exporters."""
+"""Collects an incident for the exporters from the store."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def incident_tracks(
     incident: IncidentRow,
     trails: Mapping[str, Sequence[TrackSample]] | None = None,
 ) -> IncidentTracks:
-    """All of an incident's tracks, split where a unit changed hands; ``trails`` (by unit) in the
-    place of what was shown at the time.
+    """All tracks of an incident, split where a unit changed its wearer.  ``trails`` (by unit)
+    replace those that were shown at the time.
     """
     window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
     number = incident.dispatch_number
@@ -60,7 +60,7 @@ def _split(
     points: Sequence[TrackSample],
     assignments: Sequence[Assignment],
 ) -> Iterable[WornTrack]:
-    """Consecutive points with the same wearer make one track."""
+    """Consecutive points with the same wearer form one track."""
     run: list[TrackSample] = []
     wearer = _Wearer()
     for point in points:
@@ -75,7 +75,9 @@ def _split(
 
 
 class _Wearer(NamedTuple):
-    """A person who is assigned anew, as with a new photo, is the same one."""
+    """Wearer of a unit.  A person who is assigned again, as with a new photo, is the same
+    wearer.
+    """
 
     person_id: str = ""  # empty: not worn
     name: str = ""

@@ -1,4 +1,4 @@
-"""Interface of an exporter, and the incident that it is given."""
+"""Interface of an exporter, and the incident that it receives."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BLOCK_CHARACTERS = 1 << 16
 
 
 class WornTrack(msgspec.Struct, frozen=True):
-    """Track of one unit while one person wore it, by time."""
+    """Track of one unit while one person wore it, in time order."""
 
     unit_id: str
     person_name: str  # empty: no person was assigned
@@ -37,13 +37,13 @@ class WornTrack(msgspec.Struct, frozen=True):
 
     @property
     def pieces(self) -> tuple[tuple[TrackSample, ...], ...]:
-        """Each to be drawn as a line of its own: between two of them the way is not known."""
+        """Parts that are drawn as lines of their own: between two of them the way is not known."""
         return tuple(map(tuple, pieces_of(self.points)))
 
 
 class LazyTracks(Iterable[WornTrack]):
-    """Tracks that are made while they are gone through, each time anew: those of all units at once
-    would be too large.
+    """Tracks that are made again at each iteration: those of all units together would be too
+    large.
     """
 
     def __init__(self, make: Callable[[], Iterator[WornTrack]]) -> None:
@@ -54,7 +54,7 @@ class LazyTracks(Iterable[WornTrack]):
 
 
 class TrackCount(Iterable[WornTrack]):
-    """The same tracks, counted as they are gone through the last time."""
+    """The same tracks, which are counted at the last iteration."""
 
     def __init__(self, of: Iterable[WornTrack]) -> None:
         self._of = of
@@ -78,11 +78,11 @@ class IncidentTracks:
     description: str = ""  # of the dispatch; empty: there was none
 
     def named_as(self, description: str) -> IncidentTracks:
-        """The same tracks, with the description added to the name."""
+        """The same tracks, with a description added to the name."""
         return replace(self, name=f"{self.name}, {description}")
 
     def anchor_or_refuse(self) -> Anchor:
-        """For formats that know only places on the Earth; UserError without an anchor."""
+        """Anchor for formats that know only positions on the Earth; UserError if there is none."""
         if self.anchor is None:
             raise UserError(
                 coded(
@@ -113,13 +113,13 @@ def _is_unknown_between(before: TrackSample, after: TrackSample) -> bool:
 
 
 def time_of(point: TrackSample) -> str:
-    """ISO 8601 to the millisecond, which is that of the API."""
+    """Time in ISO 8601 to the millisecond, as in the API."""
     at = datetime.fromtimestamp(to_ms(point.t_ns) / 1000, UTC)
     return f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
 
 
 def in_blocks(texts: Iterable[str]) -> Iterator[bytes]:
-    """The same as UTF-8, in parts that are worth to be written one by one."""
+    """The text as UTF-8, in blocks that are large enough to be written one by one."""
     block: list[str] = []
     size = 0
     for text in texts:
@@ -135,8 +135,8 @@ def in_blocks(texts: Iterable[str]) -> Iterator[bytes]:
 
 @dataclass(frozen=True, slots=True)
 class Exporter:
-    """``export`` is pure: the same incident gives the same bytes.  It holds no more of them in
-    memory than a track needs, and refuses (UserError) before it gives the first.
+    """Format of tracks.  ``export`` is pure: the same incident gives the same bytes.  It holds no
+    more in memory than one track needs, and raises UserError before it yields the first bytes.
     """
 
     name: str  # as in the address
@@ -147,7 +147,9 @@ class Exporter:
     is_compressed: bool = False  # so that gzip makes it no smaller
 
     def begun(self, incident: IncidentTracks) -> Iterator[bytes]:
-        """The same bytes, of which the first are made: whatever is refused is refused here."""
+        """The same bytes, of which the first are already made, so that every refusal occurs
+        here.
+        """
         content = self.export(incident)
         first = next(content, b"")
         return chain((first,), content)

@@ -1,7 +1,7 @@
-"""Parquet: one row a point; GeoParquet 1.1 where the site has an anchor.
+"""Parquet: one row for each point; GeoParquet 1.1 if the site has an anchor.
 
-Through the library ``pyarrow``, an optional part (``muster[parquet]``): most stations never write
-for data frames and databases.
+By the library ``pyarrow``, an optional part (``muster[parquet]``): most stations never write for
+data frames and databases.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def _written(pyarrow: ModuleType, parquet: ModuleType, incident: IncidentTracks)
 
 
 class _Outlet(io.RawIOBase):
-    """File whose content is taken out as it comes."""
+    """File whose content is taken out as it is written."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
@@ -71,7 +71,7 @@ class _Outlet(io.RawIOBase):
 
 
 def _row_groups(tracks: Iterable[WornTrack]) -> Iterator[list[WornTrack]]:
-    """Many points each: a row group is the smallest part that a reader takes."""
+    """Groups of many points: a row group is the smallest part that a reader can take."""
     group: list[WornTrack] = []
     for track in tracks:
         group.append(track)
@@ -150,7 +150,7 @@ def _repeated(pyarrow: ModuleType, texts: Sequence[str], counts: Sequence[int]) 
 
 
 def _places(anchor: Anchor, metres: NDArray[np.float64]) -> NDArray[Any]:
-    """Well-known binary of each point, of which the height is the last number."""
+    """Position of each point as well-known binary, in which the height is the last number."""
     places = np.zeros(
         len(metres),
         [("little_endian", "u1"), ("type", "<u4"), ("lon_deg", "<f8"), ("lat_deg", "<f8"),

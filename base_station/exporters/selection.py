@@ -15,14 +15,16 @@ from shared.errors import UserError
 
 @dataclass(frozen=True, slots=True)
 class TrackSelection:
-    """Without names: everybody."""
+    """Selection; without names it contains everyone."""
 
     names: Sequence[str] = ()  # ids of units, or names of people or crews, in any case
     from_ns: int = 0
     until_ns: int = FOREVER_NS  # before this
 
     def of(self, incident: IncidentTracks) -> IncidentTracks:
-        """Raises UserError for a name that is not in the incident, and where no point is left."""
+        """Selected tracks.  Raises UserError for a name that is not in the incident, and if no
+        point is left.
+        """
         self._require_known(incident)
         chosen = LazyTracks(lambda: self._chosen(incident.tracks))
         if any(True for _ in incident.tracks) and not any(True for _ in chosen):

@@ -1,4 +1,4 @@
-"""Formats that can be brought into an incident.  A new format is a file and a line here."""
+"""Formats that can be imported into an incident.  A new format is a file and a line here."""
 
 from __future__ import annotations
 

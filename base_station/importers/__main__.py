@@ -1,4 +1,4 @@
-"""The process that reads one file: its path and the options as arguments, the content to its
+"""Process that reads one file: its path and the options are arguments, the content goes to standard
 output.
 """
 

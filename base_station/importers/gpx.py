@@ -13,7 +13,7 @@ _POINTS, _TRACKS = frozenset({"trkpt", "rtept", "wpt"}), frozenset({"trk", "rte"
 
 
 def read_gpx(path: Path, _: ImportOptions) -> ImportedContent:
-    """Raises UserError where it is none, or no point has a time."""
+    """Read a GPX file.  Raises UserError if it is none, or no point has a time."""
     tracks: list[ImportedTrack] = []
     points = TrackPoints()
     damage: list[str] = []

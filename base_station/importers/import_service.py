@@ -1,4 +1,4 @@
-"""Brings a file into an incident: looks whether it belongs there, and keeps it unchanged."""
+"""Imports a file into an incident: checks whether it belongs there, and keeps it unchanged."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def anchor_of(records: Records, incident: IncidentRow) -> Anchor | None:
 
 
 def require_anchor(records: Records, incident: IncidentRow) -> Anchor:
-    """UserError where the incident has no place on the Earth."""
+    """Anchor of the incident.  UserError if it has no place on the Earth."""
     anchor = anchor_of(records, incident)
     if anchor is None:
         raise UserError(
@@ -48,7 +48,7 @@ def require_anchor(records: Records, incident: IncidentRow) -> Anchor:
 
 @dataclass(frozen=True)
 class ImportService:
-    """Brings files into one incident."""
+    """Imports into one incident."""
 
     catalogue: ImportCatalogue
     incident: IncidentRow
@@ -56,11 +56,11 @@ class ImportService:
     until_ns: int  # end of an incident that is open
 
     def import_file(self, path: Path, options: ImportOptions, act: Act) -> str:
-        """Keep the incoming file, which is moved, and log it; what is here already stays as it is.
-        Gives its id.
+        """Move the incoming file to its place, log it, and return its id; a file that is already
+        here stays as it is.
 
-        Raises UserError with what is wrong with the file, and StoreError where the disk or the
-        station does not take it: then nothing of it is left.
+        Raises UserError with the fault of the file, and StoreError if the disk or the station does
+        not take it: then nothing of it is left.
         """
         try:
             import_id, sha256 = import_id_of(path)
@@ -138,7 +138,7 @@ class ImportService:
         )
 
     def _far(self, content: ImportedContent) -> Sequence[str]:
-        """A warning where nothing of it is near the incident."""
+        """Warning if no part of it is near the incident."""
         starts = [track.points[0] for track in content.tracks]
         north_m, east_m = self.anchor.plane_m(
             [point.lat_deg for point in starts], [point.lon_deg for point in starts]

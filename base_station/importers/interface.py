@@ -19,7 +19,7 @@ MOST_TRACKS = 10_000
 
 
 class ImportOptions(msgspec.Struct, frozen=True):
-    """Corrections of the clock that made a file, as the person who brings it in gives them."""
+    """Corrections of the clock that made a file, from the person who imports it."""
 
     file_name: str  # as it was called where it comes from
     incident_id: str  # of the incident that it is brought into
@@ -29,8 +29,8 @@ class ImportOptions(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Importer:
-    """``read`` gets times as the file has them; the shift is added afterwards.  It raises UserError
-    where nothing in the file has a place and a time.
+    """Format of files.  ``read`` returns times as the file has them; the shift is added afterwards.
+    It raises UserError if nothing in the file has a position and a time.
     """
 
     name: str  # of the format
@@ -39,7 +39,7 @@ class Importer:
 
 
 def nothing_usable(damage: Sequence[str], reason: str) -> UserError:
-    """The error for a file of which nothing is taken, with its damage, which may be why."""
+    """Error for a file without usable content, with its damage, which may be the cause."""
     if not damage:
         return UserError(reason)
     return UserError(
@@ -50,7 +50,7 @@ def nothing_usable(damage: Sequence[str], reason: str) -> UserError:
 
 
 class TrackPoints:
-    """Points of one file while it is read: one a second of a track, by time.
+    """Points of one file while it is read: of a track one a second, in time order.
 
     ``add`` raises UserError beyond ``MOST_POINTS``.
     """
@@ -73,7 +73,7 @@ class TrackPoints:
                 )
 
     def take(self) -> tuple[ImportedPoint, ...]:
-        """Those of the track that has ended."""
+        """Points of the track that has ended."""
         points = tuple(self._points[second] for second in sorted(self._points))
         self._points.clear()
         self._tracks += bool(points)

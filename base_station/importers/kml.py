@@ -1,4 +1,4 @@
-"""Tracks and timed places in KML 2.2 and 2.3 (``Track``, and ``Point`` with a ``TimeStamp``)."""
+"""Tracks and timed positions in KML 2.2 and 2.3 (``Track``, and ``Point`` with a ``TimeStamp``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shared.coded_text import coded
 
 
 def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
-    """Raises UserError where it is none, or no place has a time."""
+    """Read a KML file.  Raises UserError if it is none, or no position has a time."""
     tracks: list[ImportedTrack] = []
     points = TrackPoints()
     placemark = _Placemark()
@@ -51,7 +51,7 @@ def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
 
 
 class _Placemark:
-    """The placemark, as far as it is read."""
+    """Placemark, as far as it is read."""
 
     def __init__(self) -> None:
         self.name = ""
@@ -77,7 +77,7 @@ class _Placemark:
                 self._corners += len(element.text.split())
 
     def end_track(self, points: TrackPoints) -> int:
-        """Gives how many places are left out."""
+        """End a track, and return how many positions were left out."""
         left_out = 0
         for time, place in zip_longest(self._times, self._places, fillvalue=""):
             left_out += _add(points, time, place.split())
@@ -86,7 +86,7 @@ class _Placemark:
         return left_out
 
     def end(self, points: TrackPoints) -> int:
-        """As above."""
+        """End the placemark, and return how many positions were left out."""
         left_out = self._corners
         if self._point:
             left_out += _add(points, self._stamp, self._point.split(","))
@@ -94,7 +94,7 @@ class _Placemark:
 
 
 def _add(points: TrackPoints, time: str, place: list[str]) -> int:
-    """1 where the place is left out, else 0."""
+    """Add a position, and return 1 if it was left out, otherwise 0."""
     lon, lat, height = [*place, "", "", ""][:3]
     point = point_of(time, lat, lon, height)
     if point is None:

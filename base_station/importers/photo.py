@@ -1,4 +1,4 @@
-"""Photograph with a place and a time in its Exif data (CIPA DC-008)."""
+"""Photograph with a position and a time in its Exif data (CIPA DC-008)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _Tags = dict[int, Any]
 
 
 def read_photo(path: Path, options: ImportOptions) -> ImportedContent:
-    """Raises UserError where it is none, or has no place or no time."""
+    """Read a photograph.  Raises UserError if it is none, or has no position or no time."""
     try:
         with (
             warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning),
@@ -107,7 +107,7 @@ def _height_m(gps: _Tags) -> float | None:
 
 
 def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[int, str]:
-    """UTC, and a warning where it is not that of the picture."""
+    """UTC of the picture, and a warning if another time is used for it."""
     taken = _text(details, ExifTags.Base.DateTimeOriginal)
     zone = _text(details, ExifTags.Base.OffsetTimeOriginal)
     fix_ns = _fix_ns(gps)
@@ -140,7 +140,7 @@ def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[in
 
 
 def _fix_ns(gps: _Tags) -> int | None:
-    """Time of the satellite fix, UTC; None: it has none."""
+    """UTC of the satellite fix; None if the picture has none."""
     try:
         date = datetime.strptime(_text(gps, ExifTags.GPS.GPSDateStamp), "%Y:%m:%d")  # noqa: DTZ007  # UTC, set two lines below
         hours, minutes, seconds = (float(one) for one in gps[ExifTags.GPS.GPSTimeStamp])

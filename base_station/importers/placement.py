@@ -12,7 +12,7 @@ PlacedPoint = tuple[int, float, float, int | None]  # t_ms, north_m, east_m, flo
 
 def placed(track: ImportedTrack, anchor: Anchor, every_s: int = 1) -> tuple[PlacedPoint, ...]:
     """Points of a track, the first of every ``every_s`` seconds.  Heights are left out: those of
-    receivers are too far off, and above another sea level, to tell a floor by.
+    receivers are too inaccurate, and above another sea level, to tell a floor.
     """
     by_time = {point.t_ns // (every_s * NS_PER_S): point for point in reversed(track.points)}
     points = [by_time[bucket] for bucket in sorted(by_time)]

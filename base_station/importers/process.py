@@ -1,5 +1,5 @@
-"""Files from elsewhere are read in a process of their own: whatever is in them, the station does
-not end, hang or fill the memory with it.
+"""Files are read in a process of their own, so that no content can end or block the station or fill
+its memory.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ImportRefusal(msgspec.Struct, frozen=True):
 
 
 def content_of(path: Path, options: ImportOptions) -> ImportedContent:
-    """Read it.  Raises UserError with the fault of the file, and advice."""
+    """Read a file in the process.  Raises UserError with the fault of the file, and advice."""
     command = (
         *(sys.executable, "-m", "base_station.importers"),
         *(str(path.absolute()), msgspec.json.encode(options).decode()),

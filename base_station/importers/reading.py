@@ -1,4 +1,4 @@
-"""Reads a file that is brought in, whatever it is."""
+"""Reads a file of any format that is imported."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ _HEIF = b"ftyp"  # behind the length of the first box
 
 
 def read_import(path: Path, options: ImportOptions) -> ImportedContent:
-    """Its content with the shift of time added.  The importer is chosen by the file's first bytes.
+    """Content of the file, with the shift of time added.  The importer is chosen by the file's
+    first bytes.
 
-    Raises UserError with what is wrong with it, and OSError where it cannot be read.
+    Raises UserError with the fault of the file, and OSError if it cannot be read.
     """
     size_bytes = path.stat().st_size
     if size_bytes > MOST_BYTES:

@@ -18,7 +18,7 @@ ImportAction = ImportFile | RemoveImport
 
 
 class ImportRequest(FolderRequest, frozen=True):
-    """One of the two actions."""
+    """Request for one of the two actions."""
 
     brought: ImportFile | None = None
     removed: RemoveImport | None = None
@@ -33,7 +33,7 @@ class ImportRequests:
         self._act = act
 
     def answer_pending(self) -> None:
-        """Carry out the request that there is, if there is one."""
+        """Carry out the request if there is one."""
         self._files.answer_pending(self._answer)
 
     def _answer(self, asked: ImportRequest) -> FolderAnswer:
@@ -47,9 +47,9 @@ class ImportRequests:
 
 
 def request_action(folder: DataFolder, action: ImportAction) -> None:
-    """Have the station that runs on the folder log the action.
+    """Ask the station that runs on the folder to log the action.
 
-    Raises UserError with the station's reason, or where it does not answer.
+    Raises UserError with the station's reason, or if it does not answer.
     """
     request_id = secrets.token_hex(8)
     _files_in(folder).ask(

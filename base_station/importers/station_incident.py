@@ -36,8 +36,8 @@ _HOW = "at the other station write it with: muster base export INCIDENT incident
 
 
 def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent:
-    """The readable part of it.  Raises UserError where it is no incident of another station, or no
-    track of it has a place on the Earth.
+    """Readable part of the incident.  Raises UserError if it is no incident of another station, or
+    no track of it has a position on the Earth.
     """
     whole = read_incident_file(path)
     incident = whole or _incident_in_torn(path)
@@ -93,9 +93,7 @@ def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent
 
 
 def _incident_in_torn(path: Path) -> IncidentInFile:
-    """The incident of a file that breaks off before its header; UserError where it is something
-    else.
-    """
+    """Incident of a file that breaks off before its header; UserError if it is something else."""
     opened: dict[str, str] = {}
     with SegmentReader(path) as reader:
         topics = {key for _, key, _ in reader.records()}

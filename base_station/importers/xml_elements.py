@@ -1,4 +1,4 @@
-"""Elements of an XML file of tracks, one by one: the file is never in memory as a whole."""
+"""Elements of an XML file of tracks, one at a time: the file is never in memory as a whole."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DEEPEST = 100  # elements in each other; folders of KML are a few
 
 
 class XmlElement(NamedTuple):
-    """An element that has ended, without its namespace and what was in it."""
+    """Element that has ended, without its namespace and its children."""
 
     name: str
     parent: str  # empty: it is the outermost
@@ -30,8 +30,8 @@ class XmlElement(NamedTuple):
 
 
 def elements_of(path: Path, damage: list[str]) -> Iterator[XmlElement]:
-    """Those before the first fault of the file, which is described in ``damage``.  Raises UserError
-    where the file has entities.
+    """Elements before the first fault of the file, which is described in ``damage``. Raises
+    UserError if the file has entities.
     """
     parents: list[Element] = []
     try:
@@ -80,7 +80,7 @@ def local_name(element: Element) -> str:
 
 
 def is_xml_of(head: bytes, root: str) -> bool:
-    """True where the first bytes of a file begin that element, in UTF-8 or UTF-16."""
+    """True if the first bytes of a file begin that element, in UTF-8 or UTF-16."""
     encoding = "utf-16" if head.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8"
     text = head.decode(encoding, "ignore")
     is_xml = text.lstrip("\ufeff \t\r\n").startswith("<")
@@ -103,7 +103,7 @@ def point_of(time: str, lat: str, lon: str, height: str) -> ImportedPoint | None
 
 
 def _utc_ns(text: str) -> int:
-    """ValueError where it is no time of XML Schema with its zone."""
+    """UTC of a time.  ValueError if it is no time of XML Schema with its zone."""
     at = datetime.fromisoformat(text)
     if at.tzinfo is None:
         raise ValueError("no zone")

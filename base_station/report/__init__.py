@@ -1,1 +1,1 @@
-"""The report on an incident: one HTML file, or PDF, that is read without the station."""
+"""Report on an incident: one HTML file, or PDF, that is read without the station."""

@@ -39,7 +39,7 @@ ReadLog = Callable[[int, int, Collection[str]], Iterable[LogRecord]]  # from, un
 
 
 class Crossing(msgspec.Struct, frozen=True):
-    """The first value on the other side of a threshold at the time of the alarm."""
+    """First value beyond a threshold at the time of the alarm."""
 
     series: str
     threshold: str
@@ -49,7 +49,7 @@ class Crossing(msgspec.Struct, frozen=True):
 
 
 class AlarmExplanation(msgspec.Struct, frozen=True):
-    """Station times; a series without values: nothing is known of it."""
+    """Series of values about an alarm, in station time; a series without values is not known."""
 
     motionless_s: Series
     temperature_degc: Series
@@ -64,13 +64,13 @@ class AlarmExplanation(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class AlarmExplainer:
-    """From any thread; nothing is written."""
+    """Maker of explanations, which writes nothing.  Thread-safe."""
 
     records: Records
     read_log: ReadLog
 
     def explain(self, alarm: AlarmRow) -> AlarmExplanation:
-        """Raises LogError where the log cannot be opened."""
+        """Explain an alarm.  Raises LogError if the log cannot be opened."""
         about = Interval(alarm.raised_ns - ABOUT_NS, alarm.raised_ns + ABOUT_NS)
         unit_id = alarm.unit_id
         logged = self.read_log(about.from_ns, about.until_ns + 1, wanted_keys([unit_id]))
@@ -93,7 +93,7 @@ class AlarmExplainer:
         )
 
     def _thresholds(self, alarm: AlarmRow) -> tuple[tuple[str, float], ...]:
-        """Those in force when it was raised."""
+        """Thresholds that were in force when the alarm was raised."""
         in_force = thresholds_in_force(self.records, alarm.raised_ns + 1)
         rule = next((one for one in ALARMS if one.name == alarm.rule), None)
         if rule is None:

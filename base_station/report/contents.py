@@ -1,6 +1,6 @@
-"""Contents of a report, as plain data; station times.
+"""Contents of a report, as plain data in station time.
 
-They are small whatever was recorded: trails are simplified, and series are kept about alarms only.
+Their size is bounded: trails are simplified, and series are kept about alarms only.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Interval(msgspec.Struct, frozen=True):
         return (self.until_ns - self.from_ns) / 1e9
 
     def within(self, other: Interval) -> Interval | None:
-        """The part in the other one; None: there is none."""
+        """Part that lies in the other interval; None if there is none."""
         both = Interval(max(self.from_ns, other.from_ns), min(self.until_ns, other.until_ns))
         return both if both.from_ns < both.until_ns else None
 
@@ -39,7 +39,7 @@ class WornTime(msgspec.Struct, frozen=True):
 
 
 class FloorTrail(msgspec.Struct, frozen=True):
-    """Parts of a trail on one floor; None: no floor was known."""
+    """Parts of a trail on one floor; None if the floor was not known."""
 
     floor: int | None
     in_contact: tuple[Line, ...]  # while the radio had contact
@@ -62,7 +62,7 @@ class PersonEntry(msgspec.Struct, frozen=True):
 
 
 class OrderReceipt(msgspec.Struct, frozen=True):
-    """Progress of one order at one unit; None: it did not happen, as far as is known."""
+    """Progress of one order at one unit; None for a step that is not known to have happened."""
 
     unit_id: str
     received_ns: int | None = None
@@ -90,7 +90,7 @@ class TimelineEntry(msgspec.Struct, frozen=True):
 
 
 class AlarmTrace(msgspec.Struct, frozen=True):
-    """Values that the station had about the time at which an alarm was raised."""
+    """Values about the time at which an alarm was raised."""
 
     alarm_id: str
     raised_ns: int
@@ -111,7 +111,7 @@ class UnitEntry(msgspec.Struct, frozen=True):
 
 
 class ImportEntry(msgspec.Struct, frozen=True):
-    """A file from elsewhere that was brought into the incident."""
+    """File that was imported into the incident."""
 
     file_name: str
     format: str
@@ -123,7 +123,7 @@ class ImportEntry(msgspec.Struct, frozen=True):
 
 
 class PhotoEntry(msgspec.Struct, frozen=True):
-    """A photograph that was brought into the incident."""
+    """Photograph that was imported into the incident."""
 
     file_name: str
     taken_ns: int  # station time

@@ -1,4 +1,4 @@
-"""Gathers the contents of a report from the database and the log."""
+"""Collects the contents of a report from the database and the log."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class ReportSources:
-    """Sources that a report is made from; nothing is written to them."""
+    """Sources of a report; nothing is written to them."""
 
     records: Records
     roster: Roster

@@ -1,4 +1,6 @@
-"""A report as one HTML file, with pictures and styles in it; the same contents, the same bytes."""
+"""Report as one HTML file that contains its pictures and styles; the same contents give the same
+bytes.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +77,7 @@ def _summary(report: ReportContents) -> Markup:
 
 
 def _urgent(report: ReportContents) -> Markup:
-    """Urgent entries, for a reader without time; the timeline has all of them."""
+    """Urgent entries, for a reader in a hurry; the timeline has all entries."""
     urgent = [one for one in report.timeline if one.is_urgent]
     shown = (
         element("li", f"{texts.clock_time(one.t_ns)} {one.text}") for one in urgent[:_MOST_URGENT]

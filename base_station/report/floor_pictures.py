@@ -27,7 +27,7 @@ _SCALES_M = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 
 @dataclass(frozen=True)
 class _Frame:
-    """From metres east and north to the picture's own units, right and down."""
+    """Transform from metres east and north to the picture's units, right and down."""
 
     west_m: float
     north_m: float
@@ -52,7 +52,7 @@ class _Frame:
 
 
 def floors_of(plan: Plan | None, people: Iterable[PersonEntry]) -> list[int | None]:
-    """Floors that the plan or a trail is on, the highest first; an unknown one last."""
+    """Floors of the plan and of trails, highest first; an unknown floor last."""
     floors: set[int | None] = {trail.floor for one in people for trail in one.trails}
     if plan is not None:
         floors |= {storey.floor for storey in plan.storeys}
@@ -62,7 +62,7 @@ def floors_of(plan: Plan | None, people: Iterable[PersonEntry]) -> list[int | No
 def floor_picture(
     floor: int | None, plan: Plan | None, people: Sequence[PersonEntry], *, small: bool = False
 ) -> Markup:
-    """Trails of these people on one floor."""
+    """Picture of these people's trails on one floor."""
     walls = _walls(plan, floor)
     drawn = [(one, trail) for one in people for trail in one.trails if trail.floor == floor]
     lines = [line for _, trail in drawn for line in (*trail.in_contact, *trail.radio_gap)]
@@ -159,7 +159,7 @@ def _ends(
 
 
 def _scale(frame: _Frame) -> Markup:
-    """A bar of a round length."""
+    """Scale bar with a round length."""
     room = min(frame.width - 2 * _MARGIN, 160.0) / frame.per_m
     length_m = max((one for one in _SCALES_M if one <= room), default=_SCALES_M[0])
     y = frame.height - 8.0

@@ -1,4 +1,4 @@
-"""Entries of the audit that are of one incident, where several were open at once."""
+"""Entries of the audit that belong to one incident, if several were open at the same time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def entries_of_incident(
     members: Members,
     assignments: Sequence[Assignment],
 ) -> list[AuditEntry]:
-    """Entries that name the incident or its members, or that are of the whole station;
+    """Entries that name the incident or its members, or that concern the whole station;
     ``assignments``: who wore which unit at that time.
     """
     if members.windows is None:
@@ -42,7 +42,7 @@ def _is_of(
 
 
 def _units_of(details: Mapping[str, Any], t_ns: int, assignments: Sequence[Assignment]) -> set[str]:
-    """Units that an action is about; empty: it is about none."""
+    """Units that an action concerns; empty if it concerns none."""
     units = {*details.get("unit_ids", ()), details.get("unit_id"), details.get("other_unit_id")}
     people = set(details.get("person_ids", ()))
     units |= {one.unit_id for one in assignments if one.person_id in people and _held(one, t_ns)}

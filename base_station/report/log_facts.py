@@ -1,6 +1,6 @@
 """Facts that only the log has: radio gaps, temperatures, and outcomes of orders.
 
-One pass, message by message; the kept data is bounded: gaps, doses, and series about alarms only.
+One pass over the messages; the kept data is bounded: gaps, doses, and series about alarms only.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class LogFacts(msgspec.Struct):
 
 
 def wanted_keys(unit_ids: Iterable[str]) -> Collection[str]:
-    """Keys of the records that ``read_facts`` looks at."""
+    """Keys of the records that ``read_facts`` uses."""
     keys = set[str]()
     for unit_id in unit_ids:
         keys |= {channel.key(unit_id) for channel in (*CONTACT_CHANNELS, COMMAND)}
@@ -80,7 +80,9 @@ def read_facts(
     about: Mapping[str, Sequence[Interval]],
     on_progress: Callable[[float], None],
 ) -> LogFacts:
-    """``wearings``: by unit, in the order of time; ``about``: times of which series are kept."""
+    """Read the facts.  ``wearings``: by unit, in time order; ``about``: times about which series
+    are kept.
+    """
     readers = {
         unit_id: _UnitReader(during, worn, about.get(unit_id, ()))
         for unit_id, worn in wearings.items()
@@ -136,7 +138,9 @@ class _UnitReader:
         self._exposures: dict[int, list[ExposureInterval]] = {}
 
     def note_header(self, t_ns: int, header: Header, *, is_live: bool) -> int:
-        """Station time at which it was sent; one that came live is radio contact."""
+        """Note a message, and return the station time at which it was sent; one that came live is
+        radio contact.
+        """
         sent_ns = self._sent_times.sent_ns(t_ns, header, is_live=is_live)
         if is_live:
             self._note_gap(t_ns)

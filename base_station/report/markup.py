@@ -13,7 +13,7 @@ _SHORT = 12  # characters
 
 
 class Markup(str):
-    """Text that is markup already."""
+    """Text that is markup already and is not escaped."""
 
     __slots__ = ()
 
@@ -22,7 +22,9 @@ Child = str | Iterable[str]
 
 
 def element(tag: str, *children: Child, **attributes: str | float | None) -> Markup:
-    """``class_`` is the attribute class, ``stroke_width`` stroke-width; None: left out."""
+    """Element as markup.  ``class_`` is the attribute class, ``stroke_width`` stroke-width; an
+    attribute that is None is left out.
+    """
     given = "".join(
         f' {name.rstrip("_").replace("_", "-")}="{_text(_number(value))}"'
         for name, value in attributes.items()
@@ -38,7 +40,7 @@ def joined(*children: Child) -> Markup:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], class_: str = "") -> Markup:
-    """Each row of texts or markup."""
+    """Table with rows of texts or markup."""
     head = element("tr", (element("th", one, scope="col") for one in headings))
     body = (
         element(
@@ -52,13 +54,13 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], class_: str = 
 
 
 class UrgentRow(tuple[str, ...]):
-    """A row of a table that stands out, in black and white too."""
+    """Row of a table that stands out, also in black and white."""
 
     __slots__ = ()
 
 
 def _kept_together(cell: str) -> str:
-    """A short text is not broken: a narrow column would break any word."""
+    """Short text without line breaks, as a narrow column would break any word."""
     is_short = not isinstance(cell, Markup) and len(cell) <= _SHORT
     return element("span", cell, class_="one-line") if is_short else cell
 

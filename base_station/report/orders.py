@@ -1,4 +1,4 @@
-"""Orders of an incident, and the outcome of each at each unit."""
+"""Orders of an incident, and their outcome at each unit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _UNKNOWN = CommandKind.UNKNOWN.name
 
 
 def orders_of(entries: Sequence[AuditEntry], facts: LogFacts) -> tuple[OrderEntry, ...]:
-    """``entries`` of the audit, oldest first."""
+    """Orders from the ``entries`` of the audit, which are oldest first."""
     replies: dict[tuple[str, str], list[ReplyRecord]] = {}
     for reply in facts.replies:
         replies.setdefault((reply.command_id, reply.unit_id), []).append(reply)
@@ -58,7 +58,7 @@ def _repeat_ids(entries: Sequence[AuditEntry]) -> Mapping[str, list[str]]:
 
 
 def details_of(entry: AuditEntry) -> Mapping[str, Any]:
-    """Fields of the action that an entry of the audit is about; empty: they were erased."""
+    """Fields of the action of an audit entry; empty if they were erased."""
     try:
         details: Mapping[str, Any] = msgspec.json.decode(entry.detail, type=dict[str, Any])
     except msgspec.DecodeError:

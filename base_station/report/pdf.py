@@ -1,5 +1,5 @@
-"""A report as PDF, made of its HTML by the library ``weasyprint``, an optional part
-(``muster[report]``): the HTML is complete, and a browser prints it.
+"""Report as PDF, made from its HTML by the library ``weasyprint``, an optional part
+(``muster[report]``): the HTML is complete, and a browser can print it.
 """
 
 from __future__ import annotations
@@ -31,13 +31,15 @@ _NO_PANGO = (
 
 
 def require_library() -> None:
-    """Raises UserError where no PDF can be written."""
+    """Raise UserError if no PDF can be written."""
     if find_spec("weasyprint") is None:
         raise UserError(_MISSING)
 
 
 def pdf_document(html: bytes) -> bytes:
-    """The same HTML gives the same bytes.  Raises UserError where a library is missing."""
+    """Convert HTML to PDF; the same HTML gives the same bytes.  Raises UserError if a library is
+    missing.
+    """
     library: Any = _library()
     own_pictures = library.URLFetcher(allowed_protocols=("data",))  # nothing outside of itself
     page = library.HTML(string=html.decode(), url_fetcher=own_pictures, media_type="print")

@@ -1,4 +1,4 @@
-"""People of an incident for its report: who wore which unit when, and where each one went."""
+"""People of an incident for its report: who wore which unit when, and where they went."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ class IncidentPeople:
         during: Interval,
         window: Window,
     ) -> None:
-        """``window``: of the positions that are read; ``during``: that the report describes."""
+        """``window``: span of the positions that are read; ``during``: span that the report
+        describes.
+        """
         self._records = records
         self._roster = roster
         self._members = members
@@ -61,7 +63,7 @@ class IncidentPeople:
         )
 
     def _wearings(self, assignments: Sequence[Assignment]) -> Mapping[str, Sequence[WornTime]]:
-        """By unit, oldest first; a unit that was not worn has one without a name."""
+        """Wearings by unit, oldest first; a unit that was not worn has one without a name."""
         found: dict[str, list[WornTime]] = {}
         last_person: dict[str, str] = {}
         for one in assignments:
@@ -80,7 +82,7 @@ class IncidentPeople:
         return {unit_id: worn for unit_id, worn in sorted(found.items()) if worn}
 
     def _present(self, unit_id: str, worn: Interval) -> list[Interval]:
-        """Parts of a time in which the unit was in the incident."""
+        """Parts of a span in which the unit was in the incident."""
         windows = self._members.of(unit_id)
         parts = [Interval(one.from_ns, one.until_ns).within(worn) for one in windows]
         return [part for one in parts if one and (part := one.within(self._during))]

@@ -1,4 +1,4 @@
-"""Photographs that were brought into an incident, scaled down for its report."""
+"""Imported photographs of an incident, scaled down for its report."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _READ_BYTES = 4 << 20
 
 
 def photographs_of(imports: Iterable[ImportRow], folder: ImportFolder) -> Photographs:
-    """The oldest ones, as many as a report takes; a damaged one has its reason in the place of the
-    picture.
+    """Oldest photographs, as many as a report contains; a damaged one has the reason in place of
+    the picture.
     """
     rows = sorted(
         (one for one in imports if one.format == PHOTO),
@@ -60,7 +60,7 @@ def _entry(row: ImportRow, folder: ImportFolder) -> PhotoEntry:
 
 
 class _DamagedError(Exception):
-    """The sentence for the report."""
+    """Damage of a photograph, with the sentence for the report."""
 
 
 def _picture(row: ImportRow, folder: ImportFolder) -> bytes:
@@ -82,7 +82,7 @@ def _picture(row: ImportRow, folder: ImportFolder) -> bytes:
 
 
 def _place(row: ImportRow, folder: ImportFolder) -> tuple[float, float] | None:
-    """Latitude and longitude in degrees; None where what was read of the file is gone."""
+    """Latitude and longitude in degrees; None if the content that was read of the file is gone."""
     try:
         content = folder.content(row.incident_id, row.import_id)
     except MusterError:

@@ -1,4 +1,4 @@
-"""The report on an incident, made in a process of its own."""
+"""Making of a report in a process of its own."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from base_station.storage.db.models import IncidentRow
 
 @dataclass(frozen=True)
 class ReportProcess:
-    """From any thread."""
+    """Maker of reports.  Thread-safe."""
 
     log_process: LogProcess
 
     def make(self, incident: IncidentRow, *, as_pdf: bool) -> bytes:
-        """HTML, or PDF.  Raises StoreError with the reason where it cannot be made, ArchiveError
-        where the log is in an archive that does not answer.
+        """Make a report as HTML or PDF. Raises StoreError with the reason if it cannot be made,
+        ArchiveError if the log is in an archive that does not answer.
         """
         job = jobs.ReportJob(
             log=self.log_process.log,

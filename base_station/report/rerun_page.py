@@ -1,4 +1,4 @@
-"""A re-run as one HTML page: tables, and both trails over each other on each floor."""
+"""Re-run as one HTML page: tables, and the old and new trails over each other on each floor."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ Trails = Mapping[str, Sequence[TrackSample]]
 def rerun_page(
     report: RerunReport, plan: Plan | None, shown: Trails, rerun: Trails, names: Mapping[str, str]
 ) -> bytes:
-    """``names``: of people, by unit.  Solid: the re-run; dashed: as it was shown."""
+    """Page of a re-run.  ``names``: names of people, by unit.  Solid lines: the re-run; dashed
+    lines: trails as they were shown.
+    """
     title = f"Re-run of {report.incident_id}"
     head = element(
         "head",
@@ -98,7 +100,9 @@ def _pictures(plan: Plan | None, people: Sequence[PersonEntry]) -> list[Markup]:
 def _person(
     number: int, unit_id: str, name: str, plan: Plan | None, shown: Trails, rerun: Trails
 ) -> PersonEntry:
-    """With the re-run as the trail that was received, and the shown one as that of a radio gap."""
+    """Person whose re-run is drawn as a received trail, and whose shown trail is drawn as in a
+    radio gap.
+    """
     new, old = rerun.get(unit_id, ()), shown.get(unit_id, ())
     figures_of_new = measure(new, plan, ())
     floors: dict[int | None, FloorTrail] = {one.floor: one for one in figures_of_new.trails}

@@ -1,6 +1,7 @@
 """Style of a report, on a screen and on paper: black on white, with line styles.
 
-Pictures have theirs as attributes: the library for PDF gives them no style of the page.
+Pictures have their styles as attributes, as the library for PDF does not apply those of the page to
+them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Every English text of a report: to have it in another language is to change this file."""
+"""English texts of a report, all of them: a translation replaces this file only."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def time_and_author(t_ns: int, by: str) -> str:
 
 
 def from_to(from_ns: int, until_ns: int) -> str:
-    """One time where both are the same second, as of a photograph."""
+    """Span of time in words; one time if both are the same second, as of a photograph."""
     first, last = clock_time(from_ns), clock_time(until_ns)
     return first if first == last else f"{first} to {last}"
 
@@ -200,7 +200,7 @@ def alarm_raised(text: str, level: str) -> str:
 
 
 def alarm_ended(state: str, text: str, reason: str, note: str, peak: str) -> str:
-    """An acknowledgement or a resolution; empty: no reason, no note, nothing measured."""
+    """Text of an acknowledgement or a resolution; empty without reason, note and measured value."""
     why = REASONS.get(reason, "")  # those of the station stand in the place of the author
     words = [f"{state}: {text}", why, note, f"{PEAK} {peak}" if peak else ""]
     return "; ".join(one for one in words if one)
@@ -230,7 +230,7 @@ def unreadable_picture(reason: str) -> str:
 
 
 def place_in_words(lat_deg: float, lon_deg: float) -> str:
-    """To 0.1 m."""
+    """Position in words, to 0.1 m."""
     north, east = "N" if lat_deg >= 0.0 else "S", "E" if lon_deg >= 0.0 else "W"
     return f"{abs(lat_deg):.6f}° {north}, {abs(lon_deg):.6f}° {east}"
 
@@ -246,7 +246,7 @@ def traces_left_out(count: int) -> str:
 
 
 def action_text(action: str, details: Details, name_of: NameOf) -> tuple[str, str] | None:
-    """Kind and sentence of an operator's action; None: other parts of the report have it."""
+    """Kind and sentence of an operator's action; None if other parts of the report have it."""
     describe = _ACTIONS.get(action)
     return _PLAIN_ACTIONS.get(action) if describe is None else describe(details, name_of)
 

@@ -9,6 +9,6 @@ from shared.messages.station import SetThresholds
 
 
 def thresholds_in_force(records: Records, before_ns: int) -> Thresholds:
-    """Those that differ from the defaults; ``before_ns``: a station time."""
+    """Thresholds that differ from the defaults; ``before_ns``: a station time."""
     last = records.last_audited(SetThresholds.__name__, before_ns)
     return {} if last is None else dict(details_of(last).get("thresholds", {}))

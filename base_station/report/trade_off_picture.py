@@ -1,5 +1,5 @@
 """Picture of a sweep over a threshold: alarms per hour of wear, and the outcome of the alarms that
-were raised then, for each value.
+were raised at the time, for each value.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _STRIPS: tuple[tuple[str, tuple[_Line, ...]], ...] = (
 
 
 def trade_off_picture(report: RehearsalReport) -> Markup:
-    """A self-contained SVG: for each level of each rule a strip for each figure, over the swept
-    threshold; dotted: as it was then.
+    """Self-contained SVG: for each level of each rule one strip for each figure, over the swept
+    threshold.  Dotted: the value at the time.
     """
     points = [point for point in report.points if not point.problem]
     values = [point.thresholds[report.swept] for point in points]
@@ -115,6 +115,6 @@ def _given(value: float | None) -> tuple[float, ...]:
 
 
 def _marked(values: Sequence[float]) -> Sequence[float]:
-    """At most ten of them, both ends among them."""
+    """At most ten of the values, both ends among them."""
     every = -(-len(values) // 10)
     return sorted({*values[::every], values[-1]}) if values else ()

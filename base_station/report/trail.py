@@ -1,4 +1,4 @@
-"""A trail as it is drawn and measured: simplified lines by floor, distance, time on each floor."""
+"""Trail as it is drawn and measured: simplified lines by floor, distance, time on each floor."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def measure(
 
 
 def simplified(line: NDArray[np.float64], tolerance_m: float = TOLERANCE_M) -> NDArray[np.bool_]:
-    """The rows (n, 2) to keep so that no other lies further from the line (Douglas and Peucker,
-    1973).
+    """Flags of the rows (n, 2) to keep, so that no other row lies further from the line than the
+    tolerance (Douglas and Peucker, 1973).
     """
     keep = np.zeros(len(line), bool)
     keep[[0, -1]] = True
