@@ -55,7 +55,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
     def from_wire(wire: imu_pb2.ImuBatch) -> RawImu:
         accel_mps2 = _vectors(wire.accel_e5_mps2, _ACCEL_PER_MPS2)
         gyro_radps = _vectors(wire.gyro_e6_radps, _GYRO_PER_RADPS)
-        t_ns = wire.t0_ns + np.cumsum(np.asarray(wire.dt_ns, dtype=np.int64))
+        t_ns = wire.t0_ns + np.array(wire.dt_ns[:], dtype=np.int64).cumsum()
         batch = RawImu(
             header=Header.from_wire(wire.header),
             t_ns=t_ns,
