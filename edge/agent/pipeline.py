@@ -17,7 +17,9 @@ from edge.agent.batteries import Batteries
 from edge.agent.decimation import Decimator, OncePerPeriod
 from edge.agent.expected_field import ExpectedField
 from edge.agent.fitted_sensor import FittedSensor
+from edge.agent.mayday_button import MaydayButton
 from edge.agent.position_publisher import PositionPublisher
+from edge.agent.sighting_limit import SightingLimit
 from edge.agent.temperatures import AmbientTemperature, CurrentReadings
 from edge.agent.unit_sensors import UnitSensors
 from edge.clocks.timeline import Timeline
@@ -25,8 +27,6 @@ from edge.sample_codec.codec import gps_fix, is_sendable, sighting, whole_second
 from edge.sample_codec.descriptions import described_unit
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import (
-    CANCEL,
-    MAYDAY,
     AmbientSample,
     ApproximatePosition,
     BatterySample,
@@ -41,7 +41,6 @@ from edge.tracker.choice.interface import Choice, ChoosesTracker
 from edge.tracker.interface import MultiSensorTracker, TrackBatch
 from edge.tracker.track_rows import empty_rows
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
-from shared.clock import NS_PER_S
 from shared.header_factory import HeaderFactory
 from shared.messages import (
     BatteryState,
@@ -57,8 +56,6 @@ from shared.messages import (
 
 LIVE = Timeline()
 _WORN_S = 20.0  # of motion in total
-_SIGHTED_MAX = 1000  # beacons whose sightings are limited one by one
-_ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
 _DESCRIPTION_FOR_TRACKER_HZ = 0.2  # a tracking agent starts when it has received one
 
 
@@ -119,12 +116,11 @@ class TrackerPipeline:
         self._electronics = CurrentReadings()
         self._batteries = Batteries()
         self._battery: float | None = None
-        self._mayday = mayday
-        self._mayday_ns: int | None = None  # when it was pressed and sent
+        self._mayday = MaydayButton(is_active=mayday)
         self._has_gps = False
         self._preflight: tuple[PreflightFinding, ...] | None = None
         self._journal_pending = 0
-        self._sighted_ns: dict[tuple[str, str], int] = {}
+        self._sighting_limit = SightingLimit()
 
     def start(self) -> tuple[Message, ...]:
         """Return the unit's first messages."""
@@ -133,13 +129,13 @@ class TrackerPipeline:
             self._describe(None),
             *(self._event(EventKind.SENSOR_FAULT, None, note) for note in self._notes),
         )
-        if not self._mayday:
+        if not self._mayday.is_active:
             return first
         return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
 
     @property
     def is_mayday_active(self) -> bool:
-        return self._mayday
+        return self._mayday.is_active
 
     @property
     def motionless_s(self) -> float:
@@ -275,33 +271,13 @@ class TrackerPipeline:
         return [] if found is None else [Temperature(self._header_factory.header(mono_ns), *found)]
 
     def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
-        """Publish a sighting, of the same beacon at most once a second."""
-        key = (sample.kind, sample.seen_id)
-        before_ns = self._sighted_ns.get(key)
-        is_repeat = before_ns is not None and 0 <= sample.t_ns - before_ns < NS_PER_S
-        if is_repeat or not is_sendable(sample):
+        if not (is_sendable(sample) and self._sighting_limit.takes(sample)):
             return []
-        if len(self._sighted_ns) >= _SIGHTED_MAX:
-            self._sighted_ns.clear()
-        self._sighted_ns[key] = sample.t_ns
         return [sighting(self._header_factory.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
-        """Apply a press of the button.  A mayday stays until the wearer cancels it; pressed again
-        it is sent again, as an operator may have resolved the first one.
-        """
-        if press.button == CANCEL:
-            if not self._mayday:
-                return []
-            self._mayday = False
-            return [self._event(EventKind.MAYDAY_CANCELLED, mono_ns, "button")]
-        if press.button != MAYDAY:
-            return []
-        before_ns, now_ns = self._mayday_ns, press.t_ns
-        if self._mayday and before_ns is not None and 0 <= now_ns - before_ns < _ONE_PRESS_NS:
-            return []
-        self._mayday, self._mayday_ns = True, now_ns
-        return [self._event(EventKind.MAYDAY, mono_ns, "button")]
+        kind = self._mayday.event_of(press)
+        return [] if kind is None else [self._event(kind, mono_ns, "button")]
 
     def _periodic(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
         t_ns = _last_source_ns(batch)
@@ -324,7 +300,7 @@ class TrackerPipeline:
             activity=self._sensors.monitor.activity(t_ns),
             motionless_s=self._sensors.monitor.motionless_s,
             battery=None if battery is None else battery.level,
-            mayday=self._mayday,
+            mayday=self._mayday.is_active,
             steps=self._sensors.monitor.steps,
             cadence_hz=self._sensors.monitor.cadence_hz(t_ns),
             floors_climbed=self._positions.floors_climbed,

@@ -99,18 +99,6 @@ def test_press_after_a_cancellation_is_sent_at_once():
     assert kinds == [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
 
 
-def test_at_most_a_thousand_sighted_devices_are_kept(
-    monkeypatch: pytest.MonkeyPatch,
-):
-    """Telephones change their addresses every few minutes, all day."""
-    monkeypatch.setattr("edge.agent.pipeline._SIGHTED_MAX", 3)
-    pipe = pipeline()
-    for number in range(20):
-        seen = SightingSample(number, "beacon", f"b{number}", 2.0, 1.0)
-        assert len(of(pipe.step(others_only(seen)), Sighting)) == 1
-    assert len(pipe._sighted_ns) <= 3
-
-
 def test_sightings_are_reported_though_the_clock_went_back():
     pipe = pipeline()
     for t_s in (7200, 3600, 3601):
