@@ -21,6 +21,7 @@ _log = logging.getLogger(__name__)
 
 _LOOK_INTERVAL_S = 5.0
 _PAUSE_S = 1.0  # between two segments
+_ROOM_SHARE = 4  # free room of the disk, by the size of the segment: the live log goes before
 
 
 class PackedLog(Protocol):
@@ -32,6 +33,9 @@ class PackedLog(Protocol):
         ...
 
     def segments(self) -> Iterable[SegmentInfo]: ...
+
+    @property
+    def disk_free_bytes(self) -> int: ...
 
     def note_rewritten(self, path: Path) -> None:
         """This segment is another file now."""
@@ -77,9 +81,11 @@ class SegmentPacker:
         return _PAUSE_S
 
     def _next(self) -> SegmentInfo | None:
+        free_bytes = self._recorded.disk_free_bytes
         for segment in self._recorded.segments():
             seen = segment.path, segment.size_bytes
-            if segment.state is SegmentState.CLOSED and seen not in self._seen:
+            has_room = free_bytes >= _ROOM_SHARE * segment.size_bytes
+            if segment.state is SegmentState.CLOSED and has_room and seen not in self._seen:
                 self._seen.add(seen)
                 if can_be_packed(segment.path):
                     return segment

@@ -72,6 +72,21 @@ def test_segment_that_is_damaged_stays_and_the_others_are_packed(
     assert "Traceback" not in caplog.text
 
 
+def test_segment_waits_for_room_on_the_disk(
+    recorder: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paths = complete(recorder)
+    sizes = [path.stat().st_size for path in paths]
+    free_bytes = 2 * max(sizes)
+    monkeypatch.setattr(Recorder, "disk_free_bytes", property(lambda _: free_bytes))
+    packer = SegmentPacker(recorder)
+    assert packer._step() > 1.0
+    free_bytes = 4 * max(sizes)
+    packer._step()
+    assert not can_be_packed(paths[0])
+    assert [path.stat().st_size for path in paths[1:]] == sizes[1:]
+
+
 def test_end_of_the_station_leaves_whole_segments(recorder: Recorder) -> None:
     records = list(read_log(recorder.folder))
     with SegmentPacker(recorder):

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import errno
+import itertools
+import os
 from pathlib import Path
 
 import pytest
 from mcap.reader import make_reader
 
 from shared.clock import NS_PER_S
+from shared.errors import LogError
 from shared.mcap_log import (
     DELTA_TOPIC,
     LogTail,
@@ -149,6 +153,25 @@ def test_rewritten_segment_is_packed_again(tmp_path: Path) -> None:
     identity = identity_of(path)
     assert identity is not None
     assert identity.revision == 1
+
+
+def test_full_disk_leaves_the_segment_and_no_other_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path)
+    before, names = path.read_bytes(), sorted(tmp_path.iterdir())
+    real, count = os.pwrite, itertools.count()
+
+    def full(file: int, data: bytes, offset: int) -> int:
+        if next(count) > 5:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return real(file, data, offset)
+
+    monkeypatch.setattr(os, "pwrite", full)
+    with pytest.raises(LogError, match="No space left"):
+        pack_segment(path)
+    assert path.read_bytes() == before
+    assert sorted(tmp_path.iterdir()) == names
 
 
 def test_packing_that_was_killed_leaves_the_segment_and_no_other_file(tmp_path: Path) -> None:
