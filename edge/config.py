@@ -18,6 +18,7 @@ from shared.log import LogFormat, LogLevel
 POSITION_RATE_HZ = (0.1, 50.0)
 _SENSOR_NAME = re.compile(r"[A-Za-z0-9_-]{1,32}")
 GainStd = Annotated[float, Meta(ge=0.0, le=0.2)]
+GyroBiasStd = Annotated[float, Meta(ge=0.0, le=0.2)]  # rad/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,7 @@ class SensorConfig:
     mount: str = ""  # how it is fastened, in words
     calibration: Path | None = None  # from `muster edge calibrate`; none: as it is
     gain_std: GainStd | None = None  # none: as the source says
+    gyro_bias_std_radps: GyroBiasStd | None = None  # none: as the source says
 
     def __post_init__(self) -> None:
         _check_place(self.worn_on)
@@ -95,6 +97,7 @@ class EdgeConfig:
     tracker: str = "by-place"
     calibration: Path | None = None  # from `muster edge calibrate`; none: sensors as they are
     gain_std: GainStd | None = None  # none: as the source says
+    gyro_bias_std_radps: GyroBiasStd | None = None  # none: as the source says
     place: ApproximatePosition | None = (
         None  # roughly where it is used, for the magnetic field; none: by GPS
     )
@@ -111,10 +114,10 @@ class EdgeConfig:
         if not self.sensors:
             _check_place(self.worn_on)
             return
-        if self.worn_on or self.mount or self.calibration or self.gain_std is not None:
+        if self.has_settings_of_one_sensor:
             raise ConfigError(
-                "worn_on, mount, calibration and gain_std are settings of the only sensor; of "
-                "several, give them in each of [[sensors]]"
+                "worn_on, mount, calibration, gain_std and gyro_bias_std_radps are settings of the "
+                "only sensor; of several, give them in each of [[sensors]]"
             )
         self._check_sensors()
 
@@ -138,6 +141,13 @@ class EdgeConfig:
                 )
 
     @property
+    def has_settings_of_one_sensor(self) -> bool:
+        """True where settings of the only sensor are given."""
+        deviations = self.gain_std, self.gyro_bias_std_radps
+        given = any((self.worn_on, self.mount, self.calibration))
+        return given or any(one is not None for one in deviations)
+
+    @property
     def source_text(self) -> str:
         """Source or sources, for a person."""
         if self.source:
@@ -148,7 +158,13 @@ class EdgeConfig:
         """Return the settings of the sensor of this name; the usual ones where it has none."""
         if not self.sensors:
             return SensorConfig(
-                name, self.source, self.worn_on, self.mount, self.calibration, self.gain_std
+                name,
+                self.source,
+                self.worn_on,
+                self.mount,
+                self.calibration,
+                self.gain_std,
+                self.gyro_bias_std_radps,
             )
         found = (sensor for sensor in self.sensors if sensor.name == name)
         return next(found, SensorConfig(name))

@@ -162,6 +162,7 @@ class SensorDescription:
     mag_present: bool = False
     barometer_present: bool = False
     gain_std: float | None = None  # relative error of scale and axes, 1 sigma; None: unknown
+    gyro_bias_std_radps: float | None = None  # at the start, each axis, 1 sigma; None: unknown
     mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none
     mag_earth_ut: float | None = None  # as what it showed the earth's field in that calibration
     place: str = ""  # part of the body that wears it, see ``edge.body_places``; empty: unknown

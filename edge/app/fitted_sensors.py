@@ -29,7 +29,10 @@ def fitted_sensors(
             found,
             place=settings.place or found.place,
             mount=settings.mount or found.mount,
-            gain_std=found.gain_std if settings.gain_std is None else settings.gain_std,
+            gain_std=_first_given(settings.gain_std, found.gain_std),
+            gyro_bias_std_radps=_first_given(
+                settings.gyro_bias_std_radps, found.gyro_bias_std_radps
+            ),
         )
         calibration = calibration_in_use(settings.calibration, unit_id, description, used)
         fitted.append(FittedSensor(sensor_of(unit_sensor(name, description)), calibration, name))
@@ -44,13 +47,12 @@ def _check_settings(config: EdgeConfig, names: tuple[str, ...]) -> None:
             f"{config.source_text} has no sensor {unknown[0]!r}; it has "
             f"{', '.join(name or 'one without a name' for name in names)}"
         )
-    if len(names) > 1 and not config.sensors and _has_settings_of_one(config):
+    if len(names) > 1 and not config.sensors and config.has_settings_of_one_sensor:
         raise ConfigError(
             f"{config.source_text} has several sensors ({', '.join(names)}): give worn_on, mount, "
-            "calibration and gain_std in a [[sensors]] of each name"
+            "calibration, gain_std and gyro_bias_std_radps in a [[sensors]] of each name"
         )
 
 
-def _has_settings_of_one(config: EdgeConfig) -> bool:
-    given = config.worn_on, config.mount, config.calibration
-    return any(given) or config.gain_std is not None
+def _first_given(setting: float | None, described: float | None) -> float | None:
+    return described if setting is None else setting

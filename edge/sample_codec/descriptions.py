@@ -21,6 +21,7 @@ def unit_sensor(name: str, sensor: SensorDescription) -> UnitSensor:
         has_magnetometer=sensor.mag_present,
         has_barometer=sensor.barometer_present,
         gain_std=sensor.gain_std,
+        gyro_bias_std_radps=sensor.gyro_bias_std_radps,
     )
 
 
@@ -79,6 +80,7 @@ def sensor_of(sent: UnitSensor) -> SensorDescription:
         mag_present=through.has_magnetometer,
         barometer_present=through.has_barometer,
         gain_std=through.gain_std,
+        gyro_bias_std_radps=through.gyro_bias_std_radps,
         place="" if through.place_recognised else through.place,
         mount=through.mount,
     )

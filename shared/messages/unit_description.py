@@ -82,6 +82,7 @@ class UnitSensor(msgspec.Struct, frozen=True):
     calibrated_s: int | None = None  # UTC seconds at which it was made; None: no calibration
     calibration_faults: str = ""
     gain_std: float | None = None  # how far scale and axes may be off; None: unknown
+    gyro_bias_std_radps: float | None = None  # of each axis, as it is sent; None: unknown
 
     def to_wire(self) -> unit_description_pb2.UnitSensor:
         return unit_description_pb2.UnitSensor(
@@ -98,7 +99,8 @@ class UnitSensor(msgspec.Struct, frozen=True):
             calibration=self.calibration,
             calibrated_s=self.calibrated_s or 0,
             calibration_faults=self.calibration_faults,
-            gain_std_ppm=_gain_std_ppm(self.gain_std),
+            gain_std_ppm=_millionths(self.gain_std),
+            gyro_bias_std_uradps=_millionths(self.gyro_bias_std_radps),
         )
 
     @staticmethod
@@ -117,7 +119,8 @@ class UnitSensor(msgspec.Struct, frozen=True):
             calibration=wire.calibration,
             calibrated_s=wire.calibrated_s or None,
             calibration_faults=wire.calibration_faults,
-            gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
+            gain_std=_from_millionths(wire.gain_std_ppm),
+            gyro_bias_std_radps=_from_millionths(wire.gyro_bias_std_uradps),
         )
 
 
@@ -159,7 +162,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_gps=self.has_gps,
             calibrated_s=self.calibrated_s or 0,
             calibration_faults=self.calibration_faults,
-            gain_std_ppm=_gain_std_ppm(self.gain_std),
+            gain_std_ppm=_millionths(self.gain_std),
             outputs=self.outputs,
             preflight_done=self.preflight is not None,
             preflight=[one.to_wire() for one in self.preflight or ()],
@@ -183,7 +186,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             has_gps=wire.has_gps,
             calibrated_s=wire.calibrated_s or None,
             calibration_faults=wire.calibration_faults,
-            gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
+            gain_std=_from_millionths(wire.gain_std_ppm),
             outputs=tuple(wire.outputs),
             preflight=tuple(map(PreflightFinding.from_wire, wire.preflight))
             if wire.preflight_done
@@ -192,6 +195,10 @@ class UnitDescription(msgspec.Struct, frozen=True):
         )
 
 
-def _gain_std_ppm(gain_std: float | None) -> int:
-    """0 says that nothing is known: perfect gains are 1."""
-    return 0 if gain_std is None else max(unsigned32(gain_std, 1e6), 1)
+def _millionths(std: float | None) -> int:
+    """Deviation in millionths; 0 says that nothing is known, and none at all is sent as 1."""
+    return 0 if std is None else max(unsigned32(std, 1e6), 1)
+
+
+def _from_millionths(sent: int) -> float | None:
+    return sent / 1e6 if sent else None

@@ -31,6 +31,7 @@ LEFT_OUT = {
     "dispatch.units",
     "enrolment",
     "gain_std",
+    "gyro_bias_std_radps",
     "http.certificate",
     "http.private_key",
     "place",

@@ -102,15 +102,30 @@ def test_inertial_samples_keep_times_and_values_within_rounding(batch):
     st.one_of(st.none(), st.floats(1.0, 1000.0)),
     st.booleans(),
     st.one_of(st.none(), st.floats(0.0, 0.2)),
+    st.one_of(st.none(), st.floats(0.0, 0.2)),
 )
-def test_encoded_description_is_unchanged_when_encoded_again(rate_hz, full_scale, mag, gain_std):
+def test_encoded_description_is_unchanged_when_encoded_again(
+    rate_hz, full_scale, mag, gain_std, gyro_bias_std_radps
+):
     def passed(sensor: SensorDescription) -> SensorDescription:
         sent = (unit_sensor("left", sensor),)
         description = SampleEncoder("u1", 1).description(0, sent, source="", tracker="")
         return sensors_of(description)["left"]
 
-    sensor = SensorDescription("s", rate_hz, full_scale, full_scale, mag, gain_std=gain_std)
+    sensor = SensorDescription(
+        "s",
+        rate_hz,
+        full_scale,
+        full_scale,
+        mag,
+        gain_std=gain_std,
+        gyro_bias_std_radps=gyro_bias_std_radps,
+    )
     once = passed(sensor)
     assert passed(once) == once
-    assert (once.gain_std is None) == (gain_std is None)  # a perfect quality is not an unknown one
-    assert gain_std is None or abs((once.gain_std or 0.0) - gain_std) <= 1e-6
+    for sent, given in (
+        (once.gain_std, gain_std),
+        (once.gyro_bias_std_radps, gyro_bias_std_radps),
+    ):
+        assert (sent is None) == (given is None)  # a perfect quality is not an unknown one
+        assert given is None or abs((sent or 0.0) - given) <= 1e-6

@@ -36,6 +36,7 @@ from base_station.fusion.smoothing.trail import trail_of
 from base_station.fusion.smoothing.wall_constraints import WallMessages, WallSegments
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 SWEEPS = 6  # over the wall constraints
 LINE_SWEEPS = 2  # over which lines legs are of
@@ -144,10 +145,10 @@ def add_live_estimates(problem: PathProblem) -> None:
 
 
 def add_wall_constraints(problem: PathProblem) -> None:
-    """Replace live estimates by the plan's walls. Where walls are crossed again and again the
-    plan is of another building, and neither is used.
+    """Replace live estimates by the plan's walls where the path is known well enough for those.
+    Where walls are crossed again and again the plan is of another building, and neither is used.
     """
-    graph = problem.graph
+    graph, shown = problem.graph, dict(problem.graph.shown)
     for unit_id, unit in problem.units.items():
         if unit.grid is not None:
             wall_messages = WallMessages(WallSegments.of(graph.chains[unit_id], unit.grid))
@@ -159,9 +160,19 @@ def add_wall_constraints(problem: PathProblem) -> None:
             wall_messages.update(graph.estimates[unit_id], graph.common.plan_m, spreads[unit_id])
             if sweep > 0 and wall_messages.log_loss > CONTRADICTED:
                 del graph.wall_messages[unit_id]
-            graph.shown.pop(unit_id, None)
+                graph.shown.pop(unit_id, None)
+            elif unit_id in shown:
+                chain = graph.chains[unit_id]
+                graph.shown[unit_id] = _without_message(chain, shown[unit_id], wall_messages)
         del spreads
         graph.step(problem.noise)
+
+
+def _without_message(chain: Chain, rows: Ints, wall_messages: WallMessages) -> Ints:
+    """Rows of the path on segments that have no message of walls."""
+    knots, _ = chain.at(chain.path.t_ns[rows])
+    with_message = wall_messages.segments.knot[wall_messages.is_known]
+    return rows[~np.isin(knots, with_message)]
 
 
 def close_loops(problem: PathProblem) -> None:

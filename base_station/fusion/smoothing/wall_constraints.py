@@ -3,7 +3,8 @@
 A segment of some metres is placed on a grid about its estimate without its own message; places
 whose steps cross a wall lose weight. The rest is approximated by a normal distribution, and what it
 adds is the segment's message, an equation of the problem (expectation propagation: Minka 2001).
-Messages are updated about each solution until nothing moves.
+Messages are updated about each solution until nothing moves. A segment known no better than a room
+has no message: walls leave it several places, of which a normal distribution is none.
 
 A plan lies some decimetres off for all units alike: places here are those of the plan, and its
 offset is a shared unknown.
@@ -38,6 +39,7 @@ Ints = NDArray[np.int64]
 GRID_POINTS = 11  # places each way, within
 GRID_HALF_WIDTH = 2.5  # standard deviations
 SHARPEST_M = 0.01  # no constraint is sharper
+KNOWN_STD_M = 1.0  # of a segment by all others, along its worse axis; beyond, it has no message
 LEAST_PART = 0.05  # of the information on a piece must come from others
 DAMPING = 0.6  # of a new message is taken
 
@@ -128,6 +130,7 @@ class WallMessages:
     def __init__(self, segments: WallSegments) -> None:
         self.segments = segments
         self.log_loss = 0.0  # log weight a piece: how much walls stood in the way
+        self.is_known = np.zeros(len(segments), dtype=np.bool_)  # well enough for a message
         self._information = np.zeros((len(segments), 2, 2))
         self._information_places = np.zeros((len(segments), 2))  # information times place
 
@@ -137,6 +140,7 @@ class WallMessages:
         """
         rest, information_places = self._without(estimate, off_m, spreads)
         spread = np.linalg.inv(rest)
+        self.is_known = np.linalg.eigvalsh(spread)[:, 1] < KNOWN_STD_M**2
         place = _times(spread, information_places)
         looks, weights = _grid_points()
         apart = looks @ np.linalg.cholesky(spread).transpose(0, 2, 1)
@@ -150,9 +154,10 @@ class WallMessages:
         left = (likely[:, :, None] * off).transpose(0, 2, 1) @ off + SHARPEST_M**2 * np.eye(2)
         information = _positive_part(np.linalg.inv(left) - rest)
         now = _times(rest + information, place + shift) - information_places
+        information[~self.is_known], now[~self.is_known] = 0.0, 0.0
         self._information += DAMPING * (information - self._information)
         self._information_places += DAMPING * (now - self._information_places)
-        self.log_loss = float(-np.log(passed).mean())
+        self.log_loss = float(-np.where(self.is_known, np.log(passed), 0.0).mean())
 
     def _without(
         self, estimate: PathEstimate, off_m: Floats, spreads: Floats

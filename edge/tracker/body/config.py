@@ -24,7 +24,7 @@ class BodyConfig(NamedTuple):
     rest_rate_radps: float = 0.08  # off the known bias, for who stands
     rest_force_mps2: float = 0.5  # of the vertical force from its mean
     rest_s: float = 0.5
-    first_bias_std_radps: float = 0.007  # about an axis, before the first rest
+    first_bias_std_radps: float = 0.007  # about an axis, where the description has none
     sway_radps: float = 0.035  # of who stands, in one tick
     bias_walk_radps: float = 3e-5  # in a root second
 

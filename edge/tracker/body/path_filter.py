@@ -35,10 +35,16 @@ _UNKNOWN_UT = 60.0  # an axis, of a field of which nothing is known
 
 
 @njit(cache=True)
-def start_path(state: BodyState, iron_std_ut: float, gain_std: float, config: BodyConfig) -> None:
+def start_path(
+    state: BodyState,
+    iron_std_ut: float,
+    gain_std: float,
+    bias_std_radps: float,
+    config: BodyConfig,
+) -> None:
     """Begin at the origin with a heading that is the frame's."""
     covariance = state.covariance
-    covariance[BIAS, BIAS] = state.bias_variance = config.first_bias_std_radps**2
+    covariance[BIAS, BIAS] = state.bias_variance = bias_std_radps**2
     covariance[GAIN, GAIN] = gain_std**2
     covariance[SCALE, SCALE] = config.scale_std**2
     for i in range(2):

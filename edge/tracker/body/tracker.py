@@ -73,10 +73,14 @@ class BodyTracker:
         self._state["event_s"] = self._state["fault_s"] = -np.inf
         self._state["in_hand"] = self.config.place == HAND
         self._state["in_pocket"] = self.config.place == POCKET
-        iron_std_ut, gain_std = _iron_std_ut(description, self.config), description.gain_std
-        if gain_std is None:
-            gain_std = self.config.gain_std
-        start_path(self._state[0], iron_std_ut, gain_std, self.config)
+        gain_std, bias_std_radps = description.gain_std, description.gyro_bias_std_radps
+        start_path(
+            self._state[0],
+            _iron_std_ut(description, self.config),
+            self.config.gain_std if gain_std is None else gain_std,
+            self.config.first_bias_std_radps if bias_std_radps is None else bias_std_radps,
+            self.config,
+        )
 
     @property
     def path_noise(self) -> PathNoise:

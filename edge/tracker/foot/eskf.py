@@ -120,6 +120,9 @@ def least_gain_share(description: SensorDescription, config: EskfConfig) -> floa
 
 def unobserved_bias_std_radps(description: SensorDescription, config: EskfConfig) -> float:
     """Standard deviation of the gyroscope's bias before a rest, beyond what the filter expects."""
+    described_radps = description.gyro_bias_std_radps
+    if described_radps is not None:
+        return described_radps if described_radps > config.start.gyro_bias_std_radps else 0.0
     return config.start.data_sheet_bias_std_radps if description.gain_std is None else 0.0
 
 

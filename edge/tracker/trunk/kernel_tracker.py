@@ -34,6 +34,9 @@ class KernelTracker:
     ) -> None:
         """``states``: one record with a ``trunk``; ``config`` has the ``trunk``'s likewise."""
         trunk: TrunkConfig = config.trunk
+        if description.gyro_bias_std_radps is not None:
+            trunk = trunk._replace(unknown_bias_radps=description.gyro_bias_std_radps)
+            config = config._replace(trunk=trunk)
         self.description = description
         self.config = config
         self._gate = new_input_state(description, trunk.saturation_ratio)

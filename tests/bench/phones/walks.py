@@ -39,6 +39,9 @@ RATE_HZ = 5.0  # of positions, as units are set
 WAYPOINT_STD_M = 0.5  # to which people stand where they say
 HEADING_M = 8.0  # walked, which shows the first direction
 HEADING_STD_RAD = 0.15  # to which somebody points along a way; a hand sways as much
+# Of their gyroscopes, whose bias Android corrects: its compatibility definition (7.3.9) wants less
+# than this of sensors of high fidelity.
+GYRO_BIAS_STD_RADPS = 0.002
 ORIGIN_NS = 1000 * NS_PER_S  # of the unit's clock when the recording begins
 LIVE, AFTERWARDS = "live", "afterwards"
 
@@ -64,9 +67,12 @@ class WaypointErrors:
 
 
 def publish_walk(trial: Path, tracker: str) -> PublishedPhone:
-    """Track a recording by a unit that is described as held in a hand, and publish it."""
+    """Track a recording by a unit that is described as a telephone in a hand, and publish it."""
     source = RecordingSource(trial)
-    worn = make_tracker(tracker, replace(source.description, place="hand"))
+    description = replace(
+        source.description, place="hand", gyro_bias_std_radps=GYRO_BIAS_STD_RADPS
+    )
+    worn = make_tracker(tracker, description)
     rows = join_rows([worn.push(source.imu), worn.finish()])
     publisher = PositionPublisher(HeaderFactory("", 1, SystemClock()), RATE_HZ)
     publisher.set_path_noise(worn.path_noise)

@@ -111,13 +111,14 @@ def test_a_wrong_key_is_named_with_the_right_one(line, reported, tmp_path):
         load_config(file, EdgeConfig)
 
 
+@pytest.mark.parametrize("name", ["gain_std", "gyro_bias_std_radps"])
 @pytest.mark.parametrize("value", ["-0.001", "0.21", "nan", "inf", "'good'", "true"])
-def test_gains_that_cannot_be_are_one_sentence(value, tmp_path):
+def test_deviations_that_cannot_be_are_one_sentence(name, value, tmp_path):
     file = tmp_path / "unit.toml"
-    file.write_text(f'source = "x"\ngain_std = {value}\n')
+    file.write_text(f'source = "x"\n{name} = {value}\n')
     with pytest.raises(ConfigError) as caught:
         load_config(file, EdgeConfig)
-    assert "gain_std" in str(caught.value)
+    assert name in str(caught.value)
     assert "\n" not in str(caught.value)
 
 

@@ -29,6 +29,8 @@ def test_settings_are_those_of_the_unit_with_what_is_given(recording: Path) -> N
     source = BlackBoxSource(recording)
     config = config_of(source, recording, "", None, ["wearer.height_m=1.8", "worn_on = foot"])
     assert (config.tracker, config.wearer.height_m, config.worn_on) == ("eskf", 1.8, "foot")
+    config = config_of(source, recording, "", None, ["gyro_bias_std_radps=0.002"])
+    assert config.sensor("").gyro_bias_std_radps == 0.002
     assert config_of(source, recording, "huang", None, ()).tracker == "huang"
 
 

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.body.config import BodyConfig
 from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.track_rows import join_rows
@@ -229,3 +230,19 @@ def test_rows_do_not_depend_on_batches_where_samples_are_bad():
     rows, whole = join_rows([*parts, tracker.finish()]), tracked(batch)
     for field in fields(whole):
         assert np.array_equal(getattr(whole, field.name), getattr(rows, field.name)), field.name
+
+
+def test_described_bias_of_the_gyroscope_replaces_that_of_a_data_sheet():
+    """Walked from the first sample on, so that no rest shows the bias."""
+
+    def heading_std_rad(gyro_bias_std_radps: float | None) -> float:
+        description = SensorDescription(
+            "hand", RATE_HZ, place="hand", gyro_bias_std_radps=gyro_bias_std_radps
+        )
+        tracker = BodyTracker(description)
+        rows = join_rows([tracker.push(imu(steps(80))), tracker.finish()])
+        return float(rows.heading_std_rad[-1])
+
+    usual_rad = heading_std_rad(None)
+    assert heading_std_rad(BodyConfig().first_bias_std_radps) == usual_rad
+    assert heading_std_rad(0.001) < 0.6 * usual_rad < usual_rad < 0.6 * heading_std_rad(0.02)
