@@ -32,7 +32,14 @@ from shared.mcap_log import SegmentPolicy, SegmentWriter
 from shared.messages import Message, Position, Status, UnitDescription
 
 _WRITTEN = Position | Status | UnitDescription
-_SETTINGS = ("gain_std", "gyro_bias_std_radps", "mount", "place", "wearer", "worn_on")  # that change a path
+_SETTINGS = (
+    "gain_std",
+    "gyro_bias_std_radps",
+    "mount",
+    "place",
+    "wearer",
+    "worn_on",
+)  # that change a path
 _PROGRESS_NS = 20 * NS_PER_S  # of the recording
 
 

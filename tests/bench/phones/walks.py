@@ -69,9 +69,7 @@ class WaypointErrors:
 def publish_walk(trial: Path, tracker: str) -> PublishedPhone:
     """Track a recording by a unit that is described as a telephone in a hand, and publish it."""
     source = RecordingSource(trial)
-    description = replace(
-        source.description, place="hand", gyro_bias_std_radps=GYRO_BIAS_STD_RADPS
-    )
+    description = replace(source.description, place="hand", gyro_bias_std_radps=GYRO_BIAS_STD_RADPS)
     worn = make_tracker(tracker, description)
     rows = join_rows([worn.push(source.imu), worn.finish()])
     publisher = PositionPublisher(HeaderFactory("", 1, SystemClock()), RATE_HZ)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.fusion.interface import Start
+from base_station.fusion.interface import Estimate, Start
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.common_errors import START_PART
@@ -25,6 +25,8 @@ from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, FREE, WALL
 from shared.clock import NS_PER_S
 from shared.messages import Header
+from shared.path_noise import PathNoise
+from shared.quality import Quality
 from tests.rig.message_factory import position
 from tests.rig.walled_plan import walled_grid
 
@@ -62,8 +64,12 @@ def corridor(off_m: tuple[float, float] = (0.0, 0.0)) -> FloorGrid:
     return grid_of([ring(RADIUS_M + WIDE_M / 2.0), ring(RADIUS_M - WIDE_M / 2.0)], off_m)
 
 
-def rounds(drift_radps: float, lasts_s: int = 240) -> tuple[PathHistory, Floats]:
-    """Along the corridor's middle at 1 m/s, round after round; and the truth by the second."""
+def rounds(
+    drift_radps: float, lasts_s: int = 240, live_std_m: float | None = None
+) -> tuple[PathHistory, Floats]:
+    """Along the corridor's middle at 1 m/s, round after round; and the truth by the second.
+    ``live_std_m``: of live estimates at the truth; without it there are none.
+    """
     angles_rad = np.arange(lasts_s) / RADIUS_M
     truth = RADIUS_M * np.column_stack((np.sin(angles_rad), np.cos(angles_rad)))
     history, own = PathHistory(), 0j
@@ -73,7 +79,15 @@ def rounds(drift_radps: float, lasts_s: int = 240) -> tuple[PathHistory, Floats]
         t_ns = second * NS_PER_S
         header = Header("FF-01", 1, second + 1, t_ns)
         history.append(position(header, north_m=own.real, east_m=own.imag), t_ns, jumped=False)
+        if live_std_m is not None:
+            history.set_live_estimate(estimate_at(t_ns, truth[second], live_std_m), None)
     return history, truth
+
+
+def estimate_at(t_ns: int, place_m: Floats, std_m: float) -> Estimate:
+    north_m, east_m = place_m.tolist()
+    spread = std_m, std_m, 0.1, 0.0, 0.0, 0.05
+    return Estimate(t_ns, north_m, east_m, 0.0, *spread, Quality.GOOD, "", None)
 
 
 def solved(smoother: Smoother, history: PathHistory, **more: Any) -> SmoothedPath:
@@ -109,6 +123,26 @@ def test_plan_of_another_building_is_not_used(smoother: Smoother) -> None:
     alone, beside = solved(smoother, history), solved(smoother, history, grid=other)
     assert np.allclose(alone.north_m, beside.north_m, atol=0.2)
     assert np.allclose(alone.east_m, beside.east_m, atol=0.2)
+
+
+def test_live_estimates_stay_where_a_path_is_known_no_better_than_a_room(
+    smoother: Smoother,
+) -> None:
+    """Walls leave several places of such a path; a fuser may have found which. The start lies 3 m
+    along the corridor from where it was stated.
+    """
+    start = Start(3.0, RADIUS_M, 0.0, 0.0, 3.0, 0.05)
+    hand = PathNoise(0.08, 0.28, 0.014)
+    (history, truth), (live, _) = rounds(0.0), rounds(0.0, live_std_m=1.0)
+    walled, held = (
+        smoother.solve(
+            {"FF-01": UnitEvidence(one.arrays(), start, grid=corridor(), path_noise=hand)}
+        ).paths["FF-01"]
+        for one in (history, live)
+    )
+    assert errors_of(walled, truth).mean() > 1.5
+    assert errors_of(held, truth).mean() < 1.0
+    assert np.hypot(held.std_north_m, held.std_east_m).min() > 0.5
 
 
 def test_pins_show_the_offset_of_a_plan(smoother: Smoother) -> None:
