@@ -123,9 +123,9 @@ def test_encoded_description_is_unchanged_when_encoded_again(
     )
     once = passed(sensor)
     assert passed(once) == once
-    for sent, given in (
+    for sent, stated in (
         (once.gain_std, gain_std),
         (once.gyro_bias_std_radps, gyro_bias_std_radps),
     ):
-        assert (sent is None) == (given is None)  # a perfect quality is not an unknown one
-        assert given is None or abs((sent or 0.0) - given) <= 1e-6
+        assert (sent is None) == (stated is None)  # a perfect quality is not an unknown one
+        assert stated is None or abs((sent or 0.0) - stated) <= 1e-6
