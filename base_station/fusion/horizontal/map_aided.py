@@ -3,7 +3,8 @@
 Away from the building ``HorizontalFilter`` estimates alone.  Near it and in it a
 ``MapParticleFilter`` (the cloud) runs beside it and gives the estimate; away from the building
 again the filter goes on from the moments of the cloud.  A cloud that walls contradict step after
-step is dropped: the filter, which uses no walls, remains with its own covariance.
+step, or that lies where the filter cannot be, is dropped: the filter, which uses no walls, remains
+with its own covariance.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ NEAR_M = 8.0  # of the outline: a cloud may begin
 AWAY_M = 14.0  # and ends
 BEGIN_STD_M = 6.0  # known as well as this, or a cloud would be too thin
 BEGIN_TURN_RAD = 0.35
+ASTRAY2 = 13.8  # squared distance from the filter, chi-square of two degrees of freedom: 0.1 %
 RETRY_M = 25.0  # walked after a cloud was given up until another begins
 
 
@@ -212,12 +214,20 @@ class MapAidedFilter:
             if distance_outside_m < NEAR_M and self._is_known():
                 self._clouds += 1
                 self._cloud = MapParticleFilter(*self._plain.moments(), self._clouds)
-        elif self._cloud.is_contradicted:
+        elif self._cloud.is_contradicted or self._is_astray(self._cloud):
             self._cloud = None
             self._to_walk_m = RETRY_M
         elif distance_outside_m > AWAY_M:
             self._plain.set_state(*self._cloud.moments())
             self._cloud = None
+
+    def _is_astray(self, cloud: MapParticleFilter) -> bool:
+        """True where walls hold a person back in a place that the path cannot have reached."""
+        if not self._plain.is_linear:
+            return False
+        mean, covariance = self._plain.moments()
+        apart = cloud.moments()[0][:2] - mean[:2]
+        return float(apart @ np.linalg.solve(covariance[:2, :2], apart)) > ASTRAY2
 
     def _is_known(self) -> bool:
         if not self._plain.is_linear:
