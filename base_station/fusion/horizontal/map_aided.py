@@ -3,8 +3,8 @@
 Away from the building ``HorizontalFilter`` estimates alone.  Near it and in it a
 ``MapParticleFilter`` (the cloud) runs beside it and gives the estimate; away from the building
 again the filter goes on from the moments of the cloud.  A cloud that walls contradict step after
-step, or that lies where the filter cannot be, is dropped: the filter, which uses no walls, remains
-with its own covariance.
+step, or that they obstruct where the filter cannot be, is dropped: the filter, which uses no walls,
+remains with its own covariance.
 """
 
 from __future__ import annotations
@@ -222,8 +222,8 @@ class MapAidedFilter:
             self._cloud = None
 
     def _is_astray(self, cloud: MapParticleFilter) -> bool:
-        """True where walls hold a person back in a place that the path cannot have reached."""
-        if not self._plain.is_linear:
+        """True where walls obstruct, in a place that the path cannot have reached."""
+        if not (cloud.is_obstructed and self._plain.is_linear):
             return False
         mean, covariance = self._plain.moments()
         apart = cloud.moments()[0][:2] - mean[:2]

@@ -34,6 +34,7 @@ Floats = NDArray[np.float64]
 MOVE_M = 0.35  # walked until the particles are moved and walls looked at
 MIN_EFFECTIVE_PART = 0.1  # of the particles, that agree with a posterior: else they begin anew
 CONTRADICTED = 1.0  # of log weight lost a move, on the mean: the plan or the path is wrong
+OBSTRUCTED = 0.2  # the same where the plan or the path may be wrong
 CONTRADICTION_GAIN = 1.0 / 30.0  # of that mean, a move
 DOUBTFUL_LOG_LIKELIHOOD = -8.0  # of the walls met of late: below, another place may be likelier
 RELOCALISE_EVERY_M = 5.0  # walked between two attempts
@@ -85,6 +86,11 @@ class MapParticleFilter:
     def is_contradicted(self) -> bool:
         """Move after move walls stood in the way of nearly all particles."""
         return self._contradiction > CONTRADICTED
+
+    @property
+    def is_obstructed(self) -> bool:
+        """Walls stood in the way of many particles of late."""
+        return self._contradiction > OBSTRUCTED
 
     @property
     def is_doubtful(self) -> bool:

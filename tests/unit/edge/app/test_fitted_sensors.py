@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
@@ -33,7 +33,9 @@ def test_deviation_is_that_of_the_setting_else_of_the_source(
     used: float | None,
     tmp_path: Path,
 ) -> None:
-    source = DescribedSource(SensorDescription("telephone", 50.0, **{name: described}))
-    config = EdgeConfig(source="x", **{name: setting})
+    of_source: dict[str, Any] = {name: described}
+    of_settings: dict[str, Any] = {name: setting}
+    source = DescribedSource(SensorDescription("telephone", 50.0, **of_source))
+    config = EdgeConfig(source="x", **of_settings)
     (sensor,) = fitted_sensors(config, cast("Source", source), "u1", tmp_path)
     assert getattr(sensor.description, name) == used
