@@ -54,7 +54,8 @@ class BodyConfig(NamedTuple):
     recognised_steps: float = 4.0
     place: int = UNKNOWN_PLACE
     scale_std: float = 0.08  # of an uncalibrated person
-    step_std: float = 0.35  # of a single step, by its length
+    step_std: float = 0.35  # of a single step, by its length, in a hand or a pocket
+    trunk_step_std: float = 0.2  # ... on a trunk that is known to be one
     usual: UsualSteps = UsualSteps()  # beyond them a step is doubted; see step_doubt
     usual_step_m: float = 0.65  # of adults who walk indoors; see path_noise
     usual_speed_mps: float = 1.2  # of the same

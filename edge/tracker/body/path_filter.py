@@ -14,7 +14,7 @@ import math
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.body.config import BodyConfig
+from edge.tracker.body.config import UNKNOWN_PLACE, BodyConfig
 from edge.tracker.body.state import (
     BEND,
     BIAS,
@@ -95,10 +95,19 @@ def propagate_step(
     for i in range(ERRORS):
         covariance[i, NORTH] += north_m * covariance[i, SCALE] - east_m * covariance[i, HEADING]
         covariance[i, EAST] += east_m * covariance[i, SCALE] + north_m * covariance[i, HEADING]
-    variance_m2 = (config.step_std * length_m) ** 2
+    variance_m2 = (step_std(state, config) * length_m) ** 2
     covariance[NORTH, NORTH] += variance_m2
     covariance[EAST, EAST] += variance_m2
     state.since_m += length_m
+
+
+@njit()
+def step_std(state: BodyState, config: BodyConfig) -> float:
+    """Return the deviation of a single step by its length; what a hand holds goes its own way."""
+    is_open = config.place == UNKNOWN_PLACE and state.direction_weight < config.recognised_steps
+    if is_open or state.in_hand or state.in_pocket:
+        return config.step_std
+    return config.trunk_step_std
 
 
 @njit()

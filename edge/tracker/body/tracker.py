@@ -24,6 +24,7 @@ from edge.tracker.body.path_filter import (
     propagate_heading,
     propagate_step,
     start_path,
+    step_std,
     update_by_compass,
     widen_by_unseen_motion,
 )
@@ -88,7 +89,8 @@ class BodyTracker:
         config = self.config
         return PathNoise(
             scale_std=config.scale_std,
-            place_std_m_per_sqrt_m=config.step_std * math.sqrt(config.usual_step_m),
+            place_std_m_per_sqrt_m=step_std(self._state[0], config)
+            * math.sqrt(config.usual_step_m),
             turn_std_rad_per_sqrt_m=config.heading_walk_rad / math.sqrt(config.usual_speed_mps),
         )
 

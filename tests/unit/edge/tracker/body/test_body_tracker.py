@@ -71,6 +71,40 @@ def std_by_way(rows):
     return np.sqrt(rows.position_cov_m2[-1, 0, 0]) / rows.distance_m[-1]
 
 
+def test_steps_of_a_trunk_are_stated_as_more_even_than_those_in_a_hand():
+    walk = imu(still(3.0), steps(10), still(3.0))
+    trunk, hand = (std_across(tracked(walk, place=place)) for place in ("waist", "hand"))
+    assert 1.3 < hand / trunk <= 1.75  # by the stated steps, less what the heading adds to both
+
+
+def std_across(rows):
+    return np.sqrt(rows.position_cov_m2[-1, 1, 1]) / rows.distance_m[-1]
+
+
+@pytest.mark.parametrize(
+    ("place", "evenness"), [("waist", "trunk"), ("chest", "trunk"), ("hand", "any"), ("", "any")]
+)
+def test_noise_of_the_path_is_that_of_the_place(place, evenness):
+    tracker = BodyTracker(SensorDescription("sensor", RATE_HZ, place=place))
+    config = tracker.config
+    step_std = {"trunk": config.trunk_step_std, "any": config.step_std}[evenness]
+    assert place_noise(tracker) == pytest.approx(step_std * config.usual_step_m**0.5)
+
+
+def place_noise(tracker):
+    std_m = tracker.path_noise.place_std_m_per_sqrt_m
+    assert std_m is not None
+    return std_m
+
+
+def test_noise_of_an_undescribed_sensor_is_a_trunk_s_once_it_is_recognised():
+    tracker = BodyTracker(SensorDescription("sensor", RATE_HZ))
+    before, before_m = tracker.path_noise, place_noise(tracker)
+    tracker.push(imu(still(3.0), steps(20), still(3.0)))
+    assert place_noise(tracker) < before_m
+    assert tracker.path_noise.scale_std == before.scale_std
+
+
 def test_doubt_of_a_run_stays_when_a_walk_follows_it():
     run = tracked(imu(still(3.0), steps(40, step_s=0.34)))
     walk = tracked(imu(still(3.0), steps(40, step_s=0.34), steps(10), still(3.0)))
