@@ -205,3 +205,10 @@ def painted_at_edges(page: Page, colour: str) -> dict[str, int]:
         colour,
     )
     return found
+
+
+def to_plan_of_a_phone(page: Page) -> None:
+    """Show the plan on a screen that shows either the list or the plan; else do nothing."""
+    switch = page.get_by_role("button", name="Plan", exact=True)
+    if switch.is_visible():
+        switch.click()

@@ -11,7 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from base_station.views.wire import UnitView
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, menu
+from tests.e2e.console_page import barriers, menu, to_plan_of_a_phone
 from tests.e2e.layout_checks import flaws
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import Stage
@@ -36,12 +36,6 @@ def section(page: Page) -> Locator:
 def on_floor(page: Page, name: str) -> Locator:
     floors = section(page).locator(".section-sheet > ul > li")
     return floors.filter(has=page.get_by_text(name, exact=True)).get_by_role("button")
-
-
-def to_plan_of_a_phone(page: Page) -> None:
-    switch = page.get_by_role("button", name="Plan", exact=True)
-    if switch.is_visible():
-        switch.click()
 
 
 @pytest.mark.parametrize(

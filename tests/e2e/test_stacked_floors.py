@@ -12,7 +12,7 @@ from PIL import Image
 from playwright.sync_api import Locator, Page, Request, expect
 
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers
+from tests.e2e.console_page import barriers, to_plan_of_a_phone
 from tests.e2e.layout_checks import flaws
 from tests.e2e.stage import Stage
 from tests.e2e.tower_scene import tower
@@ -47,12 +47,6 @@ def is_drawn(page: Page) -> bool:
 
 def places(page: Page) -> list[str | None]:
     return [one.get_attribute("style") for one in marks(page).all()]
-
-
-def to_plan_of_a_phone(page: Page) -> None:
-    switch = page.get_by_role("button", name="Plan", exact=True)
-    if switch.is_visible():
-        switch.click()
 
 
 @pytest.mark.parametrize(
