@@ -62,7 +62,7 @@ class FrameChannel:
                 ) from error
 
     def has_message(self, timeout_s: float) -> bool:
-        """A message has come, or the other end is gone; waits for it."""
+        """Wait; return True where a message has come, or the other end is gone."""
         poll = select.poll()  # not select, which knows only the first 1,024 files of a program
         poll.register(self._end, select.POLLIN)
         return bool(poll.poll(1000.0 * timeout_s))
@@ -74,16 +74,16 @@ class FrameChannel:
 
     def hang_up(self) -> None:
         """Shut down: readers at both ends find that the other one is gone."""
-        with suppress(OSError):  # it is
+        with suppress(OSError):  # the other end has done so already
             self._end.shutdown(socket.SHUT_RDWR)
 
     def stop_sending(self) -> None:
         """Shut down one direction: the other process ends, and ``receive`` waits for that."""
-        with suppress(OSError):  # it has ended
+        with suppress(OSError):  # the other process has ended already
             self._end.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
-        """By who reads."""
+        """Close this end; called by the thread that reads."""
         self._end.close()
 
     def _bytes(self, count: int) -> bytes | None:

@@ -24,7 +24,7 @@ class ArchivedPart(msgspec.Struct, frozen=True):
 
 
 class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
-    """First to a new process: the replay that it is to be."""
+    """Job: replay a window of the log for one user's consoles."""
 
     log: str
     checkpoints: str
@@ -33,11 +33,11 @@ class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
     end_ns: int
     speed: float
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # read in the place of the station's own
+    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
 class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
-    """First to a new process: to post-process an incident, and keep the result."""
+    """Job: post-process an incident, and save the result."""
 
     log: str
     checkpoints: str
@@ -49,11 +49,11 @@ class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
     now_ns: int  # station time
     memory_mb: int  # of its own, at most
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # read in the place of the station's own
+    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
 class ReportJob(msgspec.Struct, frozen=True, tag="report"):
-    """First to a new process: to write the report on an incident."""
+    """Job: write the report on an incident."""
 
     log: str
     database: str
@@ -62,11 +62,11 @@ class ReportJob(msgspec.Struct, frozen=True, tag="report"):
     closed_ns: int | None
     as_pdf: bool
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # read in the place of the station's own
+    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
 class RehearsalJob(msgspec.Struct, frozen=True, tag="rehearse"):
-    """First to a new process: to rehearse thresholds over an incident."""
+    """Job: rehearse alarm thresholds over an incident."""
 
     log: str
     checkpoints: str
@@ -77,11 +77,11 @@ class RehearsalJob(msgspec.Struct, frozen=True, tag="rehearse"):
     points: tuple[Thresholds, ...]
     swept: str  # the threshold that a sweep changes; empty: it is none
     known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # read in the place of the station's own
+    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
 class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
-    """First to a new process: to project the log from some time on into the tables."""
+    """Job: write the tables from the log, from a time on."""
 
     log: str
     checkpoints: str
@@ -91,7 +91,7 @@ class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
 
 
 class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
-    """First to a new process: to read the timeline of a unit."""
+    """Job: read the timeline of a unit."""
 
     log: str
     database: str
@@ -104,7 +104,7 @@ class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
 
 
 class ArchiveJob(msgspec.Struct, frozen=True, tag="archive"):
-    """First to a new process: to copy the incidents that are closed into an archive."""
+    """Job: copy the closed incidents into an archive."""
 
     log: str
     database: str

@@ -47,7 +47,7 @@ class DeltaFrame(msgspec.Struct, frozen=True, tag="delta"):
 class SnapshotFrame(msgspec.Struct, frozen=True, tag="picture"):
     encoded: bytes
     trails: dict[str, bytes]  # by unit: its points, encoded
-    requested: bool  # else everybody begins again
+    requested: bool  # by one console; else for all consoles, which drop what they show
 
 
 class ViewFrame(msgspec.Struct, frozen=True, tag="view"):
@@ -68,7 +68,7 @@ class ProgressFrame(msgspec.Struct, frozen=True, tag="progress"):
 
 
 class UnitTrailsFrame(msgspec.Struct, frozen=True, tag="trails"):
-    """Result that was not kept (``base_station.storage.db.smoothed.packed``)."""
+    """Trails of a unit that were not saved (``base_station.storage.db.smoothed.packed``)."""
 
     unit_id: str
     smoothed: bytes | None
@@ -76,7 +76,7 @@ class UnitTrailsFrame(msgspec.Struct, frozen=True, tag="trails"):
 
 
 class PostProcessingResultFrame(msgspec.Struct, frozen=True, tag="looked_back"):
-    """The last message, where all was worked out."""
+    """The last message: post-processing is complete."""
 
     made_ns: int
     report: bytes
@@ -117,10 +117,10 @@ class TimelineFrame(msgspec.Struct, frozen=True, tag="timeline_read"):
 
 
 class Failure(msgspec.Struct, frozen=True, tag="failure"):
-    """The last message: why there is no more, as a sentence for a person."""
+    """The last message: the reason for the failure, as a sentence for a person."""
 
     reason: str
-    is_memory: bool  # there is not enough of it, nor would there be the next time
+    is_memory: bool  # too little of it; another attempt would fail too
     code: TextCode = NO_CODE  # of the reason
 
     @staticmethod
