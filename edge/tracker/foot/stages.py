@@ -28,7 +28,7 @@ from edge.tracker.foot.filter.correction_tracking import accept_heading, propaga
 from edge.tracker.foot.filter.error_model import propagate
 from edge.tracker.foot.filter.gap_filling import inflate_for_gap, propagate_through_gap
 from edge.tracker.foot.filter.gap_turn import propagate_gap_turn
-from edge.tracker.foot.filter.initial_gyro_bias import inflate_bias, update_from_rest
+from edge.tracker.foot.filter.initial_gyro_bias import inflate_bias, learn_from_stance
 from edge.tracker.foot.filter.integration import integrate, mean_readings
 from edge.tracker.foot.filter.measurement_update import rotate_state
 from edge.tracker.foot.filter.reinitialisation import open_gap_s, reinitialise
@@ -94,7 +94,7 @@ def filter_sample(
         still = is_accepted(ring, progress, state, k, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
-        update_from_rest(state, config)
+        learn_from_stance(progress, state, config)
         if not progress.in_stance:
             begin_stance(ring, step, progress, state, slot, config)
             weigh_stance(progress, state, ring[slot].t_s, config)

@@ -210,6 +210,7 @@ FILTER = np.dtype(
         # The gyroscope's bias before a rest; see initial_gyro_bias.
         ("bias_observed", np.bool_),
         ("unobserved_bias_std_radps", np.float64),
+        ("bias_information_s2prad2", np.float64),  # by rests and landings
         (
             "unobserved_effect",
             np.float64,

@@ -5,6 +5,10 @@ level axes, but nothing about the vertical, for in stance a foot twists by one t
 second, differently for each person.  The filter then assumes the bias of a good sensor, which gives
 the best path for those; reported is what a data sheet allows.
 
+The filter believes that landings show the bias better than they can: each takes a part of it for
+an error of the heading, which none can see (see gap_turn).  So what rests and landings can tell
+is counted beside it, and no less of the bias is reported than that leaves.
+
 If the first rest shows more than was expected, the bias is widened to that, and what it has done to
 heading and position meanwhile is corrected, as far as that is linear.
 """
@@ -17,10 +21,10 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.error_state import ATTITUDE, GYRO_BIAS, POSITION, SIZE
+from edge.tracker.foot.error_state import ATTITUDE, GYRO_BIAS, POSITION, SIZE, VELOCITY
 from edge.tracker.foot.filter.bridge_scale import update_bridges
 from edge.tracker.foot.filter.correction_tracking import widen_clone
-from edge.tracker.foot.state import FilterState
+from edge.tracker.foot.state import FilterState, Progress
 
 OBSERVED_SHARE = 0.02  # of the variance at the start; less is known
 NONLINEAR_RATIO_MAX = 2.2  # times the stated deviation; beyond, the walk is as good as lost
@@ -35,7 +39,8 @@ def inflate_bias(state: FilterState, config: EskfConfig) -> None:
     if state.bias_observed:
         return
     variance = _update_least_known_axis(state)
-    share = variance / config.start.gyro_bias_std_radps**2
+    prior = config.start.gyro_bias_std_radps**2
+    share = max(variance / prior, 1.0 / (1.0 + prior * state.bias_information_s2prad2))
     if share < OBSERVED_SHARE:
         state.bias_observed = True
         for i in range(3):
@@ -83,13 +88,21 @@ def _observed_bias_rms_radps(state: FilterState) -> float:
 
 
 @njit()
+def learn_from_stance(progress: Progress, state: FilterState, config: EskfConfig) -> None:
+    """Take from a still sample what it shows of a bias that is not known, before it corrects."""
+    if state.bias_observed:
+        return
+    if not progress.in_stance:
+        inform_by_landing(progress, state)
+    update_from_rest(state, config)
+
+
+@njit()
 def update_from_rest(state: FilterState, config: EskfConfig) -> None:
     """Widen the bias to what the first rest shows, where that is more than was expected.
 
     Everything the bias has moved is widened along with it, so that the stance corrects all of it.
     """
-    if state.bias_observed:
-        return
     off = state.angle_rad  # as scratch
     square = 0.0
     for i in range(3):
@@ -117,6 +130,26 @@ def update_from_rest(state: FilterState, config: EskfConfig) -> None:
     for i in range(SIZE):
         for j in range(SIZE):
             state.covariance[i, j] += state.column[i] * state.column[j]
+
+
+@njit()
+def inform_by_landing(progress: Progress, state: FilterState) -> None:
+    """Count what the first still sample after a stride can tell of the bias, before it does.
+
+    A bias turns the velocity of the swing along with the foot: at the landing the velocity is off
+    by the bias times the way, across it.
+    """
+    north_m = state.position_n_m[0] - progress.foothold_north_m
+    east_m = state.position_n_m[1] - progress.foothold_east_m
+    p = state.covariance
+    variance = 0.5 * (p[VELOCITY, VELOCITY] + p[VELOCITY + 1, VELOCITY + 1])
+    state.bias_information_s2prad2 += (north_m * north_m + east_m * east_m) / variance
+
+
+@njit()
+def inform_by_rest(state: FilterState, rate_variance: float) -> None:
+    """Count what a measurement of the rate at rest tells of the bias."""
+    state.bias_information_s2prad2 += 1.0 / rate_variance
 
 
 @njit()

@@ -16,6 +16,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import GYRO_BIAS, VELOCITY
+from edge.tracker.foot.filter.initial_gyro_bias import inform_by_rest
 from edge.tracker.foot.filter.measurement_update import (
     begin_updates,
     end_updates,
@@ -46,6 +47,7 @@ def apply_zupt(ring: Ring, step: Step, state: FilterState, slot: int, config: Es
     rate_noise += config.zupt.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
     if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.zupt.stance_rate_gain_min_hz * rate_noise:
+        inform_by_rest(state, rate_variance)
         for i in range(3):
             measure(step, state, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
             gain = step.update_gain[step.updates - 1, GYRO_BIAS + i]
