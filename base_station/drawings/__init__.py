@@ -1,1 +1,1 @@
-"""Drawings of buildings from elsewhere, read as plans in a process of their own."""
+"""Drawings of buildings from other programs, read as plans in a process of their own."""

@@ -1,4 +1,6 @@
-"""The process that reads one drawing: the file from its standard input, the draft to its output."""
+"""Process that reads one drawing: the file comes on standard input, the draft goes to standard
+output.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draft of a plan: content of a file, to be reviewed before it becomes the plan."""
+"""Draft of a plan: content of a file, for review before it becomes the plan."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from shared.coded_text import NO_CODE, TextCode, code_of_text
 
 
 class DrawnPicture(msgspec.Struct, frozen=True):
-    """Picture without scale: a scan, a photo or a page of a PDF."""
+    """Picture without a scale: a scan, a photograph or a page of a PDF."""
 
     webp: bytes  # base64 in JSON
     width_px: int
@@ -33,7 +33,7 @@ class Draft(msgspec.Struct, frozen=True, tag="draft"):
 
 
 def noted(draft: Draft, notes: Iterable[str]) -> Draft:
-    """The draft with notes and their codes."""
+    """The draft with further notes and their codes."""
     given = tuple(notes)
     return msgspec.structs.replace(
         draft, notes=tuple(map(str, given)), note_codes=tuple(map(code_of_text, given))

@@ -32,7 +32,7 @@ _ROUGH_M = 0.05  # how far a curve's line may lie from it
 
 
 def read_dxf(content: bytes, options: Options) -> Draft:
-    """Raises UserError with the fault of the file, and advice."""
+    """Read a DXF drawing.  Raises UserError with the fault of the file, and advice."""
     if find_spec("ezdxf") is None:
         raise UserError(_MISSING)
     library: Any = import_module("ezdxf")
@@ -82,7 +82,7 @@ def _shapes(layer: str, points: list[Point], named: bool) -> Iterator[DrawnShape
 
 
 def _lines(modelspace: Any, metres: float) -> Iterator[tuple[str, list[Point]]]:
-    """Layer and points of each line, also of those within blocks."""
+    """Layer and points of each line, including those within blocks."""
     disassemble: Any = import_module("ezdxf.disassemble")
     entities = disassemble.recursive_decompose(modelspace)
     drawn = (one for one in entities if one.dxftype() in _DRAWN)

@@ -37,12 +37,14 @@ class _Found(NamedTuple):
 
 
 def read_geojson(content: bytes, name: str) -> Draft:
-    """Raises UserError with what is wrong with it."""
+    """Read GeoJSON. Raises UserError with the fault of the file."""
     return _draft(name, [_by_tags(one) for one in _features(content, "this file")])
 
 
 def read_imdf(content: bytes, name: str) -> Draft:
-    """Levels are floors, units rooms or stairs, openings doors, wall fixtures walls."""
+    """Read IMDF: levels become floors, units rooms or stairs, openings doors, wall fixtures
+    walls.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             files = {
@@ -102,7 +104,9 @@ def _imdf_kind(part: str, category: str) -> str:
 
 
 def _by_tags(feature: Mapping[str, Any]) -> _Tagged:
-    """By ``kind`` as in plans of Muster, or by tags of OpenStreetMap (Simple Indoor Tagging)."""
+    """Kind of a feature, by ``kind`` as in plans of Muster, or by tags of OpenStreetMap (Simple
+    Indoor Tagging).
+    """
     properties = _properties(feature)
     kind = str(properties.get("kind", ""))
     indoor = str(properties.get("indoor", ""))
@@ -192,7 +196,7 @@ def _type(feature: Mapping[str, Any]) -> str:
 
 
 def _lines(feature: Mapping[str, Any]) -> Iterator[list[tuple[float, float]]]:
-    """Its lines, and the outer rings of its areas; those of two points and more."""
+    """Lines of a feature, and the outer rings of its areas, each with two points or more."""
     geometry = feature.get("geometry")
     if not isinstance(geometry, dict):
         return
@@ -225,7 +229,7 @@ def _ordinal(properties: Mapping[str, Any]) -> int:
 
 
 def _name(properties: Mapping[str, Any]) -> str:
-    """IMDF has names by language."""
+    """Name of a feature; in IMDF there is one for each language."""
     name = properties.get("name")
     if isinstance(name, dict):
         name = next(iter(name.values()), None)

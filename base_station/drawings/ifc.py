@@ -59,7 +59,7 @@ _NOT_DRAWN = {
 
 
 def is_zipped_ifc(content: bytes) -> bool:
-    """True if a ZIP file has an IFC in it; the file may be torn."""
+    """True if a ZIP file contains an IFC file; the ZIP file may be torn."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             return any(_is_ifc(entry) for entry in archive.infolist())
@@ -68,7 +68,9 @@ def is_zipped_ifc(content: bytes) -> bool:
 
 
 def read_zipped_ifc(content: bytes, options: Options) -> Draft:
-    """The first IFC of a ZIP file, such as ``.ifczip``.  Raises UserError as ``read_ifc``."""
+    """Read the first IFC file in a ZIP file, such as ``.ifczip``. Raises UserError as
+    ``read_ifc``.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entry = next(one for one in archive.infolist() if _is_ifc(one))
@@ -92,7 +94,7 @@ def read_zipped_ifc(content: bytes, options: Options) -> Draft:
 
 
 def read_ifc(content: bytes, options: Options) -> Draft:
-    """Raises UserError with the fault of the file, and advice."""
+    """Read an IFC file.  Raises UserError with the fault of the file, and advice."""
     if find_spec("ifcopenshell") is None:
         raise UserError(_MISSING)
     file = _opened(content)
@@ -152,7 +154,7 @@ def _opened(content: bytes) -> Any:
 
 
 def _solids(file: Any, building: ModelBuilding) -> dict[int, Solid]:
-    """By the id of the part: those that have a shape which the library can make."""
+    """Solids by the id of the part, for parts whose shape the library can make."""
     parts = {part.id(): part for element in building.elements for part in element.parts}
     if not parts:
         return {}

@@ -1,6 +1,6 @@
-"""Building of an IFC file: its floors, and the elements of which a plan is drawn.
+"""Building of an IFC file: its floors, and the elements from which a plan is drawn.
 
-Only the structure is read here, of IFC2x3, IFC4 and IFC4x3 alike; solids come later (``ifc``).
+Only the structure is read here, from IFC2x3, IFC4 and IFC4x3 alike; solids come later (``ifc``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _EAST: Point = (1.0, 0.0)
 
 
 class ModelLevel(NamedTuple):
-    """Floor: storeys of about one height."""
+    """Floor: storeys of about the same height."""
 
     height_m: float  # in the frame of the file
     name: str
@@ -73,7 +73,9 @@ def name_of(entity: Any) -> str:
 def _levels(
     storeys: Sequence[Any], walls: Counter[int], unit_m: float
 ) -> tuple[list[ModelLevel], dict[int | None, int]]:
-    """With the level of each storey by its id.  Of several storeys that with most walls counts."""
+    """Levels, and the level of each storey by its id.  Of several storeys at one level, that with
+    most walls counts.
+    """
     levels: list[ModelLevel] = []
     level_of: dict[int | None, int] = {}
     groups: list[list[tuple[float, Any]]] = []
@@ -148,7 +150,7 @@ _WALKED = ("IfcStairFlight", "IfcRampFlight", "IfcSlab", "IfcStair", "IfcRamp")
 
 
 def _parts(entity: Any, without: str = "", only: Sequence[str] = ()) -> tuple[Any, ...]:
-    """The entity, or those of its parts that have a shape."""
+    """The entity itself, or those of its parts that have a shape."""
     if entity.Representation:
         return (entity,)
     below = [part for relation in entity.IsDecomposedBy for part in relation.RelatedObjects]
@@ -161,7 +163,7 @@ def _parts(entity: Any, without: str = "", only: Sequence[str] = ()) -> tuple[An
 
 
 def _use(entity: Any, in_ifc2x3: str) -> str:
-    """PredefinedType, which had another name in IFC2x3."""
+    """PredefinedType of an entity, which had another name in IFC2x3."""
     return str(getattr(entity, "PredefinedType", None) or getattr(entity, in_ifc2x3, None))
 
 

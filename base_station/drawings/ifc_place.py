@@ -37,7 +37,9 @@ def place_of(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None
 
 
 def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None, tuple[str, ...]]:
-    """IfcMapConversion: east = E + a x - o y, north = N + o x + a y, of (a, o) a unit vector."""
+    """Place by IfcMapConversion: east = E + a x - o y, north = N + o x + a y, of (a, o) a unit
+    vector.
+    """
     geolocation: Any = import_module("ifcopenshell.util.geolocation")
     found = geolocation.get_helmert_transformation_parameters(file)
     if found is None:
@@ -69,7 +71,9 @@ def _mapped(file: Any, unit_m: float, origin: Point) -> tuple[ModelPlace | None,
 
 
 def _map_unit_m(crs: dict[str, Any], unit_m: float) -> float:
-    """Without a unit of its own the map has that of the file, though some write metres then."""
+    """Unit of the map in metres.  A map without a unit of its own has that of the file, though some
+    programs write metres then.
+    """
     unit: Any = import_module("ifcopenshell.util.unit")
     stated = crs.get("MapUnit")
     if stated is None or isinstance(stated, str):
@@ -87,7 +91,7 @@ def _grid_north_rad(zone: Zone, east_m: float, north_m: float) -> float:
 
 
 def _by_site(file: Any, unit_m: float, origin: Point) -> ModelPlace | None:
-    """IfcSite's latitude and longitude are those of its own placement."""
+    """Place by the latitude and longitude of IfcSite, which are those of its own placement."""
     for site in file.by_type("IfcSite"):
         if not site.RefLatitude or not site.RefLongitude:
             continue
@@ -107,13 +111,13 @@ def _by_site(file: Any, unit_m: float, origin: Point) -> ModelPlace | None:
 
 
 def _degrees(parts: tuple[int, ...]) -> float:
-    """Degrees, minutes, seconds and millionths of a second; all of one sign."""
+    """Degrees from degrees, minutes, seconds and millionths of a second, all of one sign."""
     scales = (1.0, 60.0, 3600.0, 3600.0e6)
     return sum(part / scale for part, scale in zip(parts, scales, strict=False))
 
 
 def _true_heading_of_y_rad(file: Any) -> float:
-    """By TrueNorth, the direction of true north in the frame of the file."""
+    """True heading of the file's y axis, by TrueNorth, the direction of true north in its frame."""
     for context in file.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
         if context.TrueNorth:
             x, y = context.TrueNorth.DirectionRatios[:2]

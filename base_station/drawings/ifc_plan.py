@@ -45,7 +45,7 @@ class DrawnFloors(NamedTuple):
 
 
 class _DrawnFloor:
-    """Shapes of one level, before they are put together."""
+    """Shapes of one level, before they are joined."""
 
     def __init__(self, level: ModelLevel) -> None:
         self.level = level
@@ -60,7 +60,7 @@ class _DrawnFloor:
 
     @property
     def is_used(self) -> bool:
-        """True if people get there: a foundation has walls alone."""
+        """True if people can be on it: a foundation has walls only."""
         return bool(self.doors or self.areas)
 
 
@@ -153,7 +153,7 @@ def _add(floors: list[_DrawnFloor], element: ModelElement, solids: list[Solid]) 
 def _cut_by(
     floors: list[_DrawnFloor], element: ModelElement, solid: Solid
 ) -> Iterator[_DrawnFloor]:
-    """Floors whose plane cuts a solid; near to its own floor no other is."""
+    """Floors whose plane cuts a solid; of planes close to its own floor only that one."""
     for row, floor in enumerate(floors):
         if not solid.bottom_m < floor.cut_m <= solid.top_m:
             continue
@@ -186,7 +186,7 @@ def _add_gap(floors: list[_DrawnFloor], element: ModelElement, solid: Solid) -> 
 
 
 def _add_stairs(floors: list[_DrawnFloor], solids: list[Solid]) -> bool:
-    """On each floor that the stairs reach, the ground that they cover."""
+    """Add to each floor that the stairs reach the ground that they cover."""
     bottom_m, top_m = min(one.bottom_m for one in solids), max(one.top_m for one in solids)
     if top_m - bottom_m < _STEPS_M:
         return False

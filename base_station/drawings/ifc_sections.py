@@ -24,7 +24,7 @@ MOST_OUTLINE_POINTS = 900  # of all floors
 
 
 class Solid(NamedTuple):
-    """Triangles of an element, or of its parts."""
+    """Triangles of an element or of its parts."""
 
     vertices: NDArray[np.float64]  # (n, 3)
     triangles: NDArray[np.int64]  # (m, 3), rows of ``vertices``
@@ -39,7 +39,7 @@ class Solid(NamedTuple):
 
 
 class WallGap(NamedTuple):
-    """Rectangle of an opening, in axes of which the first lies along the wall."""
+    """Rectangle of an opening, in axes of which the first is along the wall."""
 
     along: Point  # unit vector
     begin_m: float
@@ -53,7 +53,7 @@ class WallGap(NamedTuple):
         return [self._at(self.begin_m, middle_m), self._at(self.end_m, middle_m)]
 
     def area(self, beyond_m: float) -> Any:
-        """Polygon that is as much deeper on both faces of the wall."""
+        """Polygon of the opening, extended by the same depth beyond both faces of the wall."""
         near_m, far_m = self.near_m - beyond_m, self.far_m + beyond_m
         ends = ((self.begin_m, near_m), (self.end_m, near_m), (self.end_m, far_m))
         return _library().Polygon([self._at(*end) for end in (*ends, (self.begin_m, far_m))])
@@ -64,14 +64,14 @@ class WallGap(NamedTuple):
 
 
 def joined(solids: Sequence[Solid]) -> Solid:
-    """Solids of the parts of an element as one."""
+    """Join the solids of an element's parts into one."""
     first = np.cumsum([0, *(len(one.vertices) for one in solids[:-1])])
     triangles = [one.triangles + at for one, at in zip(solids, first, strict=True)]
     return Solid(np.concatenate([one.vertices for one in solids]), np.concatenate(triangles))
 
 
 def section(solid: Solid, height_m: float) -> Any:
-    """Area (shapely) in which a plane cuts a solid; empty where it does not."""
+    """Area (shapely) in which a plane cuts a solid; empty if it does not."""
     shapely = _library()
     above = solid.vertices[:, 2] >= height_m
     count_above = above[solid.triangles].sum(axis=1)
@@ -100,7 +100,7 @@ def footprint(solid: Solid) -> Any:
 
 
 def gap_of(area: Any, along: Point) -> WallGap:
-    """The rectangle around an opening's section."""
+    """Rectangle around the section of an opening."""
     points = _library().get_coordinates(area)
     x, y = along
     begin_m, end_m = np.sort(points @ (x, y))[[0, -1]]
@@ -126,7 +126,9 @@ def wall_lines(walls: Any, gaps: Sequence[Any]) -> list[list[Point]]:
 
 
 def outlines_of(floors: Sequence[Any]) -> list[list[list[Point]]]:
-    """Rings around the walls of each floor that enclose something; roughly, if it must be."""
+    """Rings around the walls of each floor that enclose something, simplified as much as the limit
+    of their points requires.
+    """
     whole = [
         united([_filled(one) for one in polygons(walls) if _encloses(one)]) for walls in floors
     ]
@@ -144,12 +146,12 @@ def rings_of(area: Any, tolerance_m: float = _ROUGH_M) -> list[list[Point]]:
 
 
 def united(areas: Sequence[Any]) -> Any:
-    """Area that any of the areas covers."""
+    """Union of areas."""
     return _library().union_all(areas)
 
 
 def polygons(area: Any) -> list[Any]:
-    """Polygons of which an area consists."""
+    """Polygons that form an area."""
     parts = _library().get_parts(area)
     return [one for one in parts if one.geom_type == "Polygon" and not one.is_empty]
 

@@ -22,7 +22,9 @@ _MISSING = coded(
 
 
 def page_of(content: bytes, number: int) -> tuple[Image.Image, int]:
-    """The page (from 1) and how many there are.  Raises UserError with what is wrong with it."""
+    """Page of a PDF (counted from 1) as a picture, and the number of pages.  Raises UserError with
+    the fault of the file.
+    """
     if find_spec("pypdfium2") is None:
         raise UserError(_MISSING)
     library: Any = import_module("pypdfium2")

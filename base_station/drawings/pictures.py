@@ -1,5 +1,5 @@
-"""Pictures of floors: whatever came is decoded, made smaller and written anew, so that nothing but
-the picture is left.
+"""Pictures of floors: every picture is decoded, reduced in size and encoded again, so that nothing
+but the picture is left.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _TOO_LARGE = coded(
 
 
 def read_picture(content: bytes) -> DrawnPicture:
-    """Raises UserError with what is wrong with it."""
+    """Read a picture.  Raises UserError with the fault of the file."""
     try:
         with (
             warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning),
@@ -45,7 +45,9 @@ def read_picture(content: bytes) -> DrawnPicture:
 
 
 def _upright(opened: Image.Image) -> Image.Image:
-    """On white where it is transparent, as drawings that are exported often are."""
+    """Picture turned upright, with white where it is transparent, as exported drawings often
+    are.
+    """
     opened.load()
     try:
         turned = ImageOps.exif_transpose(opened)
@@ -60,7 +62,7 @@ def _upright(opened: Image.Image) -> Image.Image:
 
 
 def encoded(picture: Image.Image) -> DrawnPicture:
-    """As large as goes into ``_MOST_BYTES``, and never larger than it was."""
+    """Encode a picture as large as ``_MOST_BYTES`` allow, and never larger than it was."""
     if min(picture.size) < 2:
         raise UserError(coded("picture-is-line", "the picture has no more than a line of pixels"))
     for side_px in _SIDES_PX:

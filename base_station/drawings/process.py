@@ -1,5 +1,5 @@
-"""Drawings are read in a process of their own: libraries that read files of strangers may end, hang
-or fill the memory, and the station does not with them.
+"""Drawings are read in a process of their own: libraries that read files from unknown sources may
+crash, hang or fill the memory, and the station must not.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def command_of(options: Options) -> tuple[str, ...]:
 
 
 def draft_of(content: bytes, options: Options) -> Draft:
-    """Read it.  Raises UserError with the fault of the file, and advice."""
+    """Read a drawing in the process.  Raises UserError with the fault of the file, and advice."""
     try:
         done = subprocess.run(
             command_of(options),

@@ -1,4 +1,4 @@
-"""Reader of drawings: the kind of a file is read from its first bytes, not from its name."""
+"""Reader of drawings: the format of a file is recognised by its first bytes, not by its name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OTHERS = {
 
 
 def read_drawing(content: bytes, options: Options) -> Draft:
-    """Raises UserError with the fault of the file, and advice."""
+    """Read a drawing of any format.  Raises UserError with the fault of the file, and advice."""
     if content.startswith(_PICTURES):
         return Draft(picture=pictures.read_picture(content))
     text = content.removeprefix(_BOM).lstrip()
@@ -54,6 +54,6 @@ def _read_zipped(content: bytes, options: Options) -> Draft:
 
 
 def _is_dxf(content: bytes, text: bytes) -> bool:
-    """Its first group has the code 0 or 999, a section or a remark."""
+    """True if the first group has the code 0 or 999, a section or a comment."""
     first = text[:200].split(b"\n", 1)[0].strip()
     return content.startswith(_BINARY_DXF) or first in {b"0", b"999"}

@@ -1,4 +1,4 @@
-"""Shapes that a drawing gives, and the plan made of them."""
+"""Shapes that a drawing gives, and the plan that is made of them."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ class DrawnShape(NamedTuple):
 def plan_of(
     name: str, shapes: Sequence[DrawnShape], heights_m: Mapping[int, float] | None = None
 ) -> dict[str, Any]:
-    """GeoJSON in site metres, as ``site/plan`` takes it.  UserError where it is no building.
+    """GeoJSON in site metres, as ``site/plan`` accepts it.  UserError if it is no building.
 
-    ``heights_m`` of the floors above the ground floor; without, they are ``STOREY_M`` apart.
+    ``heights_m``: heights of the floors above the ground floor; without them floors are
+    ``STOREY_M`` apart.
     """
     if not shapes:
         raise UserError(coded("drawing-no-wall", "the drawing has no line that could be a wall"))
@@ -50,13 +51,13 @@ def plan_of(
 
 
 def box_of(points: Iterable[Point]) -> tuple[float, float, float, float]:
-    """West, south, east, north."""
+    """Bounds: west, south, east, north."""
     xs, ys = zip(*points, strict=True)
     return min(xs), min(ys), max(xs), max(ys)
 
 
 def require_size(points: Sequence[Point]) -> None:
-    """UserError where it is too small to walk in, or no site is so large."""
+    """UserError if it is too small to walk in, or larger than any site."""
     if len(points) > MOST_POINTS:
         raise UserError(
             coded(

@@ -1,4 +1,4 @@
-"""Layout for Foxglove: everybody on the map, all alarms, heights and temperatures."""
+"""Layout for Foxglove: all units on the map, all alarms, heights and temperatures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ZOOM_OF_BUILDING = 18
 
 
 def make_layout(unit_ids: Iterable[str]) -> str:
-    """JSON that Foxglove imports (*Layouts*, *Import from file*)."""
+    """Return the JSON that Foxglove imports (*Layouts*, *Import from file*)."""
     units = sorted(unit_ids)
     fused = FUSED.key(STATION_ID)
     heights = [

@@ -12,7 +12,7 @@ from shared.errors import UserError
 
 
 def require_library() -> None:
-    """Raises UserError with the way to install it."""
+    """Raise UserError, with the way to install the library, if it is missing."""
     if find_spec("foxglove") is None:
         raise UserError(
             "the library foxglove-sdk, which serves Foxglove, is not installed: "

@@ -11,7 +11,9 @@ from shared.mcap_log import SegmentReader
 
 
 def topics_in(segments: Iterable[Path]) -> set[str]:
-    """Topics, those made for Foxglove as well; a segment that is not complete is read for it."""
+    """Topics of a log, including those made for Foxglove; an incomplete segment is read for
+    them.
+    """
     topics: set[str] = set()
     for path in segments:
         with SegmentReader(path) as reader:

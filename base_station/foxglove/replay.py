@@ -25,7 +25,9 @@ _PLAN_LOGGED_NS = 1000 * NS_PER_S  # the plan is logged again as often, and a li
 
 
 class LogReplay:
-    """Publishes the records of a window in step with its clock; call ``step`` again and again."""
+    """Replay that publishes the records of a window in step with its clock; ``step`` is to be
+    called regularly.
+    """
 
     def __init__(
         self,
@@ -46,7 +48,9 @@ class LogReplay:
         self._seek(window_ns[0])
 
     def step(self, now_ns: int) -> bool:
-        """Publish records due at the monotonic time ``now_ns``; False: nothing was due."""
+        """Publish the records that are due at the monotonic time ``now_ns``. False if none was
+        due.
+        """
         requests = self._server.requests()
         for request in requests:
             self._apply(request)

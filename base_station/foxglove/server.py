@@ -31,17 +31,19 @@ _BACKLOG_MESSAGES = 16_384  # of one client; beyond it the oldest are dropped
 
 
 class FoxgloveServer:
-    """Channels are made as topics come; a subscriber gets the newest message of its topic.
+    """Server whose channels are made as topics come; a subscriber gets the newest message of its
+    topic.
 
-    The library calls in a thread of its own: what it brings waits until ``work`` or ``requests``.
+    The library calls from a thread of its own: its requests wait until ``work`` or ``requests`` is
+    called.
     """
 
     def __init__(
         self, host: str, port: int, name: str, time_range_ns: tuple[int, int] | None = None
     ) -> None:
-        """``time_range_ns``: that of a replay, which clients may then play, pause and seek.
+        """``time_range_ns``: range of a replay, which clients can then play, pause and seek.
 
-        Raises UserError where the port cannot be used.
+        Raises UserError if the port cannot be used.
         """
         self._context = foxglove.Context()
         self._channels: dict[str, foxglove.Channel] = {}
@@ -69,7 +71,9 @@ class FoxgloveServer:
         return self._server.port
 
     def advertise(self, topics: Iterable[str]) -> None:
-        """Make channels ahead of their messages: a client subscribes only to what it knows."""
+        """Make channels before their first messages, as a client subscribes only to channels that
+        it knows.
+        """
         for topic in topics:
             if topic not in self._channels and not is_console(topic):
                 self._open(topic)
@@ -83,7 +87,7 @@ class FoxgloveServer:
                 self._log(t_ns, EVERY_ALARM, payload)
 
     def work(self) -> None:
-        """Give the newest message of each topic that a client has just subscribed to."""
+        """Send the newest message of each topic to which a client has just subscribed."""
         topics = set()
         while not self._listener.subscribed.empty():
             topics.add(self._listener.subscribed.get())

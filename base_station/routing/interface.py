@@ -1,4 +1,4 @@
-"""Trails and places that ways are searched over, and the routes that are found."""
+"""Trails and positions over which ways are searched, and the routes that are found."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Waypoint(msgspec.Struct, frozen=True):
 
 
 class WalkedTrail(msgspec.Struct, frozen=True):
-    """Way of one unit until now, oldest point first; the last one is where it is."""
+    """Way of one unit until now, oldest point first; the last point is its position."""
 
     unit_id: str
     places_m: Floats  # (n, 2), north and east

@@ -1,4 +1,4 @@
-"""A route as legs that a person can follow without sight: turns, metres and floors."""
+"""Route as legs that a person can follow without sight: turns, metres and floors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LANDING_M = 4.0  # a shorter way between two flights is their landing
 
 
 class RouteLeg(msgspec.Struct, frozen=True):
-    """One leg: a turn, a straight way, and the floors that are climbed at its end."""
+    """Leg of a route: a turn, a straight way, and the floors that are climbed at its end."""
 
     # From the leg before, at first from the rescuer's heading; None where it is not known how the
     # rescuer stands then: at a begin without a heading, and behind stairs that a plan shows.
@@ -31,7 +31,7 @@ class RouteLeg(msgspec.Struct, frozen=True):
 
 
 def legs_of(places: Sequence[Waypoint], heading_rad: float | None) -> tuple[RouteLeg, ...]:
-    """Steps of a route's corners; ``heading_rad`` of the rescuer, None where it is not known."""
+    """Legs between a route's corners; ``heading_rad`` is the rescuer's, None if it is not known."""
     return tuple(_with_turns(list(_without_landings(list(_stretches(places)))), heading_rad))
 
 
@@ -51,7 +51,7 @@ class _Stretch(msgspec.Struct):
 
 
 def _stretches(places: Sequence[Waypoint]) -> Iterator[_Stretch]:
-    """Straight parts; a change of floor belongs to the one before it."""
+    """Straight parts; a change of floor belongs to the part before it."""
     leg, is_plan_climb = _Stretch(0.0, 0.0), False
     for before, place in pairwise(places):
         part = _Stretch(place.north_m - before.north_m, place.east_m - before.east_m)
@@ -79,7 +79,7 @@ def _climbed(before: int | None, floor: int | None) -> int:
 
 
 def _without_landings(legs: list[_Stretch]) -> Iterator[_Stretch]:
-    """Flights of one staircase are one climb, and one that is taken back is none."""
+    """Flights of one staircase as one climb; a flight that is walked back at once is none."""
     held: _Stretch | None = None
     for leg in legs:
         if held is not None and held.floors and leg.floors and leg.length_m < LANDING_M:

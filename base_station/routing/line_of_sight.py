@@ -1,4 +1,4 @@
-"""Corners of a way: a straight walk is one line."""
+"""Corners of a way: a straight walk becomes one line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def straightened(places_m: Floats, floor: int | None, grid: FloorGrid | None) ->
 
 
 def _furthest_seen(places_m: Floats, at: int, last: int, floor: int, grid: FloorGrid) -> int:
-    """The last of the following nodes to which there is no wall; at least the next one."""
+    """Last of the following nodes without a wall between; at least the next one."""
     ahead = np.arange(at + 1, last + 1)
     begins_m = np.broadcast_to(places_m[at], (len(ahead), 2))
     is_free = grid.crossings(floor, begins_m, places_m[ahead]) != WALL

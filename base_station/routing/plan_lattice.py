@@ -32,7 +32,9 @@ class PlanLattice(NamedTuple):
         return not self.nodes
 
     def edge_node(self, floor: int, place_m: Floats) -> int:
-        """Node at the edge of the plan nearest to a place (2,) beyond it; -1: there is none."""
+        """Node at the edge of the plan nearest to a position (2,) beyond it; -1 if there is
+        none.
+        """
         if self.grid is None or floor not in self.nodes:
             return -1
         nodes = self.nodes[floor]
@@ -44,7 +46,7 @@ class PlanLattice(NamedTuple):
         return int(nodes[min(max(row, 0), last_row), min(max(column, 0), last_column)])
 
     def node_at(self, floor: int, places_m: Floats) -> Indices:
-        """Node (k,) nearest to each place (k, 2); -1 beside the plan, or where a wall is."""
+        """Node (k,) nearest to each position (k, 2); -1 beside the plan, or in a wall."""
         if self.grid is None or floor not in self.nodes:
             return np.full(len(places_m), -1, dtype=np.int64)
         nodes = self.nodes[floor]
@@ -62,7 +64,7 @@ NO_LATTICE = PlanLattice(
 
 
 def plan_lattice(grid: FloorGrid | None) -> PlanLattice:
-    """Lattice of all floors of which the plan shows walls; an empty one where there is none."""
+    """Lattice of all floors whose walls the plan shows; an empty one if there are none."""
     if grid is None:
         return NO_LATTICE
     lattices = {floor: grid.free_lattice(floor) for floor in grid.floors}

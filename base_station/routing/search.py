@@ -16,8 +16,8 @@ from base_station.routing.way_graph import WayGraph
 def routes_to(
     graph: WayGraph, unit_id: str, rescuer_ids: Iterable[str], most: int | None = None
 ) -> dict[str, Route]:
-    """Return the shortest routes to the unit, of people that have one, the nearest first; ``most``:
-    their number.
+    """Return the shortest routes to the unit, at most ``most``, the nearest first, of people that
+    have one.
     """
     if unit_id not in graph.nodes:
         return {}
@@ -79,5 +79,5 @@ def _storeys(graph: WayGraph, nodes: list[int]) -> Iterator[tuple[int, int]]:
 
 
 def _floor_of(floors: Sequence[int]) -> int | None:
-    """The one that is known of a part on one floor; None where none is."""
+    """Known floor of a part on one floor; None if none of its nodes has one."""
     return next((floor for floor in floors if floor != NO_FLOOR), None)

@@ -1,4 +1,6 @@
-"""Trails cut into steps as short as a cell, without the lines between points that are far apart."""
+"""Trails divided into steps as short as a cell, without the lines between points that are far
+apart.
+"""
 
 from __future__ import annotations
 

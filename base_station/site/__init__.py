@@ -1,1 +1,1 @@
-"""The plan of the site, and where people can get to on it."""
+"""Plan of the site, and the area that people can reach on it."""

@@ -37,7 +37,7 @@ class Corners(msgspec.Struct, frozen=True):
 
 
 def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) -> Corners:
-    """Corners by a world file; raises ConfigError for a wrong one."""
+    """Corners by a world file.  Raises ConfigError if it is not valid."""
     lat_lon = _grid(crs)
     if len(world) != 6 or not all(math.isfinite(value) for value in world):
         raise ConfigError(coded("world-file-unfit", "a world file has six numbers, one a line"))
@@ -82,7 +82,7 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
 
 
 def _grid(crs: str) -> Callable[[float, float], LatLon]:
-    """Function from a world file's x and y to degrees."""
+    """Function that converts x and y of a world file to degrees."""
     if crs == DEGREES:
         return lambda x, y: (y, x)
     if crs == WEB_MAPS:

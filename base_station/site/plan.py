@@ -47,7 +47,7 @@ class Stairs(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Plan(msgspec.Struct, frozen=True):
-    """Plan as read; ``geojson`` is the text that the console draws."""
+    """Plan that was read; ``geojson`` is the text that consoles draw."""
 
     geojson: bytes
     storeys: tuple[Storey, ...]  # by height, lowest first
@@ -67,24 +67,24 @@ class Plan(msgspec.Struct, frozen=True):
         return tuple(storey.down_m for storey in self.storeys)
 
     def floor_probability(self, floor: int, down_m: float, std_down_m: float) -> float:
-        """The probability of a floor, of all that the plan has."""
+        """Probability of a floor, among all floors of the plan."""
         return floor_probability(self.storeys, floor, down_m, std_down_m)
 
     def floor_at(self, down_m: float, floor: int | None) -> int | None:
-        """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
+        """Number of the nearest storey; stays at ``floor`` until another is clearly nearer."""
         return floor_at(self.storeys, down_m, floor)
 
     def is_inside(self, north_m: float, east_m: float, inside: bool) -> bool:
-        """True if a place is in the building; near a wall, as it was before."""
+        """True if a position is in the building; near an outer wall the previous answer is kept."""
         depth_m = self.depth_m(north_m, east_m)
         return depth_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
 
     def depth_m(self, north_m: float, east_m: float) -> float:
-        """Depth within the outer walls, negative outside of them; 0 where there is no outline."""
+        """Depth within the outer walls, negative outside of them; 0 if there is no outline."""
         return max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
 
     def away_m(self, north_m: float, east_m: float) -> float:
-        """Distance of a place to the nearest outline; 0 within one or where there is none."""
+        """Distance of a position to the nearest outline; 0 inside, or if there is no outline."""
         return max(
             0.0, min((-_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
         )
@@ -99,12 +99,14 @@ def read_plan(geojson: bytes) -> Plan:
 
 
 def salvage_plan(geojson: bytes) -> Plan:
-    """Read a plan accepted before; unreadable features are left out and listed in ``damage``."""
+    """Read a plan that was accepted before; unreadable features are left out and listed in
+    ``damage``.
+    """
     return _read_plan(geojson)[0]
 
 
 def _read_plan(geojson: bytes) -> tuple[Plan, list[str]]:
-    """With what is wrong with each feature that cannot be read."""
+    """Read a plan, and return it with the faults of the features that cannot be read."""
     document = _document(geojson)
     outlines: list[Ring] = []
     walls: list[Wall] = []
@@ -142,9 +144,9 @@ def _read_plan(geojson: bytes) -> tuple[Plan, list[str]]:
 
 
 def check_plan(geojson: bytes) -> Plan:
-    """Read a plan that is set now; refuses more than ``read_plan``.
+    """Read a plan that is set now; it refuses more than ``read_plan``.
 
-    Refused: walls or stairs on a floor without height, as no one can be placed there, and more
+    Refused: walls or stairs on a floor without a height, as nobody can be located there, and more
     walls than the station can check for every position.
     """
     plan = read_plan(geojson)
@@ -279,7 +281,7 @@ def _storeys(site: dict[str, Any]) -> tuple[Storey, ...]:
 
 
 def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:
-    """Distance to the ring's border, negative outside of it."""
+    """Distance to the ring, negative outside of it."""
     inside = False
     nearest_m = math.inf
     for (x0_m, y0_m), (x1_m, y1_m) in zip(ring, ring[1:] + ring[:1], strict=True):

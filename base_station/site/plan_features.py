@@ -74,7 +74,7 @@ _SHAPES = {"room": _AREAS, **dict.fromkeys(LINED, (*_LINES, *_AREAS))}
 
 
 class _Properties(msgspec.Struct, gc=False):
-    """Those that the station or a console looks at."""
+    """Properties that the station or a console uses."""
 
     kind: Any = None
     floor: Any = None
@@ -100,7 +100,7 @@ class PlanFeature(msgspec.Struct, frozen=True, gc=False):
         return feature_name(self.number, self.kind)
 
     def lines(self) -> list[Line]:
-        """The points of each of its lines, or of its areas' outer rings; a height is left."""
+        """Points of each line, or of the outer rings of its areas; heights are ignored."""
         match self.geometry:
             case LineString(coordinates):
                 lines = [coordinates]
@@ -116,7 +116,7 @@ class PlanFeature(msgspec.Struct, frozen=True, gc=False):
 
 
 def read_feature(number: int, encoded: msgspec.Raw) -> PlanFeature:
-    """Raises UserError, which names the feature."""
+    """Read a feature.  Raises UserError, which names the feature."""
     try:
         feature = msgspec.json.decode(encoded, type=_Feature)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -138,8 +138,8 @@ def read_feature(number: int, encoded: msgspec.Raw) -> PlanFeature:
 
 
 def require_strict(feature: PlanFeature) -> None:
-    """UserError where an old plan may do what a new one may not: the station closes a ring by
-    itself, and a console draws a feature without a valid floor on all floors.
+    """UserError for what an earlier plan may have and a new one may not: the station closes a ring
+    by itself, and a console draws a feature without a valid floor on all floors.
     """
     _floor(feature.stated_floor, feature.number, feature.kind)
     for ring in _rings(feature.geometry):
@@ -199,7 +199,7 @@ def _require_shape(feature: PlanFeature) -> None:
 
 
 def _parts(geometry: Geometry | None) -> Iterator[list[_Positions]]:
-    """The lines of a line, or the rings of an area, each a list of positions."""
+    """The points of a line, or the rings of an area, each as a list of positions."""
     match geometry:
         case LineString(coordinates):
             yield [coordinates]
@@ -229,7 +229,7 @@ def _rings(geometry: Geometry | None) -> Iterator[_Positions]:
 
 
 def _what(number: int, encoded: msgspec.Raw) -> str:
-    """Name of a feature that cannot be read, as far as it has one."""
+    """Name of a feature that cannot be read, if it has one."""
     kind: Any = None
     try:
         properties = msgspec.json.decode(encoded)["properties"]

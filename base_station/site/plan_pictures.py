@@ -26,7 +26,7 @@ class FloorPicture(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def require_pictures(member: Any) -> None:
-    """Raises UserError where ``pictures`` of the plan's member ``muster`` cannot be drawn."""
+    """Raise UserError if ``pictures`` of the plan's member ``muster`` cannot be drawn."""
     try:
         pictures = msgspec.convert(member, list[FloorPicture])
     except msgspec.ValidationError as error:

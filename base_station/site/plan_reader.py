@@ -1,5 +1,5 @@
-"""Plan reader with a cache: a plan is read and checked in the thread of the request, and the engine
-finds it read.
+"""Plan reader with a cache: a plan is read and checked in the thread of the request, so that the
+engine need not read it.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ class PlanReader:
         self._last: _Prepared | None = None  # replaced whole: any thread may ask
 
     def check(self, geojson: bytes) -> None:
-        """Raises UserError where the plan may not be laid, and makes ready for it else."""
+        """Check a plan and keep it ready.  Raises UserError if it cannot be used."""
         plan = check_plan(geojson)
         self._last = _Prepared(geojson, plan, FloorGrid.of(plan))
 
     def plan(self, geojson: bytes) -> Plan:
-        """One that was taken, as far as it can be read (``salvage_plan``)."""
+        """Plan that was accepted, as far as it can be read (``salvage_plan``)."""
         last = self._last
         return last.plan if last and last.geojson == geojson else salvage_plan(geojson)
 
     def grid(self, plan: Plan | None) -> FloorGrid | None:
-        """``FloorGrid.of``, remembered: another anchor leaves the plan as it is."""
+        """``FloorGrid.of``, kept: another anchor does not change the plan."""
         if plan is None:
             return None
         last = self._last

@@ -1,8 +1,8 @@
-"""Area that a person can reach on a floor among walls, as it grows with time, compiled.
+"""Area that a person can reach on a floor among walls, as it grows with time.  Compiled.
 
 The way to each square is the shortest (Dijkstra 1959), over sides and corners of squares.  A search
-goes on from the one of a shorter way, so that a second costs what it adds; it ends at an area that
-is too large to help a search on a plan.
+continues from that of a shorter way, so that it costs only what it adds; it ends if the area
+becomes too large to help a search on a plan.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _compiled = partial(njit, cache=True, error_model="numpy")
 
 
 class ReachableArea:
-    """Shortest ways from one place, continued as the way grows."""
+    """Shortest ways from one position, continued as the way grows."""
 
     def __init__(self, walls: Flags, at: tuple[float, float], square_m: float) -> None:
-        """``at``: the place in squares, rows and columns, on the floor."""
+        """``at``: the position in squares, rows and columns, on the floor."""
         self._walls, self._at, self._square_m = walls, at, square_m
         self._seen = np.zeros(walls.size // 8 + 1, dtype=np.uint8)  # a bit a square
         self._next: Indices = np.zeros(_ROOM, dtype=np.int64)  # a heap: way, then square
@@ -128,7 +128,7 @@ def _expand(
     from_column: float,
     way: int,
 ) -> bool:
-    """Expand squares up to a way; False where the heap is full and has to be enlarged."""
+    """Expand squares up to a way.  False if the heap is full and must be enlarged."""
     rows, columns = walls.shape
     while counts[_SIZE] > 0 and counts[_WALKED] < MOST_SQUARES and heap[0] >> 32 <= way:
         if counts[_SIZE] + 8 > len(heap):

@@ -10,8 +10,8 @@ Flags = NDArray[np.bool_]
 
 
 def corners(places_m: Floats, tolerance_m: float) -> Flags:
-    """Flags of the points (n, 2) to keep: both ends, and those without which the line would be
-    more than ``tolerance_m`` away from one that is left out.
+    """Flags of the points (n, 2) to keep: both ends, and those without which the line would be more
+    than ``tolerance_m`` away from a point that is left out.
     """
     kept = np.zeros(len(places_m), dtype=np.bool_)
     kept[[0, -1]] = True

@@ -1,4 +1,4 @@
-"""Storey of a person by height, among the storeys of a plan or learnt ones."""
+"""Storey of a person by height, among the storeys of a plan or learnt storeys."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TABLE = float64[:, ::1]
 
 
 class Storey(msgspec.Struct, frozen=True, cache_hash=True):
-    """One level of a building; down in the incident frame."""
+    """Level of a building; down in the incident frame."""
 
     floor: int  # 0 is the ground floor
     down_m: float
@@ -43,7 +43,7 @@ def floor_at(storeys: tuple[Storey, ...], down_m: float, floor: int | None) -> i
 def floor_probability(
     storeys: tuple[Storey, ...], floor: int, down_m: float, std_down_m: float
 ) -> float:
-    """Probability of a floor among all storeys; 0 of one that does not exist."""
+    """Probability of a floor among all storeys; 0 for one that does not exist."""
     sure: float = _floor_probability(_table(storeys), floor, down_m, std_down_m)
     return sure
 
@@ -57,7 +57,7 @@ def _table(storeys: tuple[Storey, ...]) -> Floats:
 
 @_compiled(int64(_TABLE, float64, float64))
 def _nearest(storeys: Floats, down_m: float, held: float) -> int:
-    """Row of the nearest storey; -1: the held one stays."""
+    """Row of the nearest storey; -1 if the held one stays."""
     nearest, nearest_m, held_m = 0, math.inf, math.inf
     for row in range(len(storeys)):
         apart_m = abs(storeys[row, 1] - down_m)
@@ -88,5 +88,5 @@ def _floor_probability(storeys: Floats, floor: float, down_m: float, std_down_m:
 
 
 def storey_of(storeys: Sequence[Storey], floor: int | None) -> Storey | None:
-    """Storey of this number, if it is on the plan or was walked on."""
+    """Storey with this number, if it is on the plan or was walked on."""
     return next((one for one in storeys if one.floor == floor and one.seen), None)

@@ -1,9 +1,9 @@
-"""Places of the UTM grid on the Earth: aerial pictures by surveyors are given in it.
+"""Positions of the UTM grid on the Earth, in which surveyors give aerial pictures.
 
 Krüger's series for the inverse transverse Mercator projection, to the fourth order in the third
 flattening (C. F. F. Karney, "Transverse Mercator with an accuracy of a few nanometers", J. Geodesy
-85, 2011, equations 7 to 11 and 36).  ETRS89 and WGS-84 are taken as one: they differ by less than
-a metre.
+85, 2011, equations 7 to 11 and 36). ETRS89 and WGS-84 are taken as the same: they differ by less
+than a metre.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def zone_of(crs: str) -> Zone | None:
 
 
 def lat_lon_of(zone: Zone, east_m: float, north_m: float) -> tuple[float, float]:
-    """Degrees; nan where the numbers are no place of the zone."""
+    """Latitude and longitude in degrees; nan for numbers that are no position of the zone."""
     north_m -= _FALSE_NORTH_M if zone.is_south else 0.0
     if not (abs(east_m - _FALSE_EAST_M) <= 1e6 and abs(north_m) <= _FALSE_NORTH_M):
         return math.nan, math.nan

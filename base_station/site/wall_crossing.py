@@ -36,9 +36,9 @@ _compiled = partial(njit, cache=True, error_model="numpy")
 def crossing(
     ground: Ground, row: float, column: float, rows: float, columns: float, sampling: float
 ) -> int:
-    """Highest class of ground on a straight step from a place by so many rows and columns.
+    """Highest class of ground on a straight step from a position by a number of rows and columns.
 
-    A wall is met where it is entered: who walks along it, or leaves it, does not cross it again.
+    A wall counts where it is entered: a step along it or out of it does not cross it again.
     """
     last_row, last_column = ground.shape[0] - 1, ground.shape[1] - 1
     looks = max(1, math.ceil(max(abs(rows), abs(columns)) / sampling))
