@@ -174,7 +174,7 @@ def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
 
 def _rest_unchanged(name: str, resting: bool) -> str:
     if resting:
-        return coded("rests-already", "{name} is resting already", name=name)
+        return coded("rests-already", "{name} is in rehab already", name=name)
     return coded("works-already", "{name} is at work already", name=name)
 
 
@@ -244,13 +244,14 @@ def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
 
 
 def _require_valid_times(par_interval_s: float, work_limit_s: float) -> None:
-    for what, time_s in (("roll call", par_interval_s), ("rest", work_limit_s)):
+    par, rehab = Term("roll_call", "PAR"), Term("rest", "rehab")
+    for what, time_s in ((par, par_interval_s), (rehab, work_limit_s)):
         if not (math.isfinite(time_s) and SHORTEST_S <= time_s <= LONGEST_S):
             raise UserError(
                 coded(
                     "incident-time-unfit",
                     "the time until the next {what} is {shortest_s} to {longest_s}",
-                    what=Term(what.replace(" ", "_"), what),
+                    what=what,
                     shortest_s=Measure(SHORTEST_S, f"{SHORTEST_S:.0f} s"),
                     longest_s=Measure(LONGEST_S, f"{LONGEST_S / 3600:.0f} h"),
                 )

@@ -200,10 +200,10 @@ def test_all_of_the_crowd_stand_in_lines_after_one_press(
 
 def test_alarm_is_acknowledged_with_one_press(incident: Incident) -> None:
     page = incident.page
-    page.wait_for_timeout(GUARD_MS)
     presses = Presses(page)
     row = strip(page).get_by_role("listitem").filter(has_text=NAMES[DOWN])
-    row.get_by_role("button", name="Acknowledge").click()
+    # By its key: a click just after another alarm has come is ignored, as on a busy machine.
+    row.get_by_role("button", name="Acknowledge").press("Enter")
     expect(row.get_by_role("button", name="Resolve")).to_be_visible()
     assert presses.count() == 1
 

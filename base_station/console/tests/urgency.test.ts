@@ -149,7 +149,7 @@ describe("handedTo", () => {
   it("is who wears the unit of an alarm that names somebody else", () => {
     expect(handedTo(mayday, unit("1", { person: { ...wearer, name: "Ana" } }))).toBe("");
     expect(handedTo(mayday, unit("1", { person: wearer }))).toBe("Bo wears this unit now");
-    expect(handedTo(mayday, unit("1"))).toBe("nobody wears this unit now");
+    expect(handedTo(mayday, unit("1"))).toBe("this unit is unassigned now");
     const bob = alarm("fall", { text: "Bob (2.) may have fallen" });
     expect(handedTo(bob, unit("1", { person: wearer }))).toBe("Bo wears this unit now");
     expect(handedTo(bob, unit("1", { person: { ...wearer, name: "Bob (2.)" } }))).toBe("");

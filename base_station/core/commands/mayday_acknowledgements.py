@@ -17,8 +17,8 @@ from shared.coded_text import coded
 from shared.messages import CommandKind
 
 MAYDAY_RULE = "mayday"
-CANCELLED = coded("order-mayday-cancelled", "the wearer has cancelled the mayday")
-CALLED_AGAIN = coded("order-mayday-again", "the wearer has called another mayday")
+CANCELLED = coded("order-mayday-cancelled", "the member has cancelled the mayday")
+CALLED_AGAIN = coded("order-mayday-again", "the member has called another mayday")
 _LASTS_NS = 86_400 * NS_PER_S  # as long as any order may
 
 

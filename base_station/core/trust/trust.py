@@ -105,7 +105,7 @@ def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
     if fused.floor_probability is not None and fused.floor_probability < AMBER_FLOOR:
         text = coded(
             "doubt-floor",
-            "the floor is only {sure_fraction:.0%} sure",
+            "the floor is uncertain ({sure_fraction:.0%})",
             sure_fraction=round(fused.floor_probability, 2),
         )
         yield Trust("amber", text, "floor not sure")

@@ -98,7 +98,7 @@ def test_next_wearer_of_a_unit_has_not_worked_yet(script: Script) -> None:
 def test_second_rest_is_refused(script: Script) -> None:
     script.act(SetRest("FF-01", True))
     script.act(SetRest("FF-01", True))
-    assert refusals(script) == ["Person 1 is resting already"]
+    assert refusals(script) == ["Person 1 is in rehab already"]
 
 
 def test_wearer_with_another_unit_keeps_the_work_done(script: Script) -> None:
@@ -119,4 +119,4 @@ def test_resting_wearer_rests_with_another_unit(script: Script) -> None:
     script.register("FF-04")
     script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
     script.act(SetRest("FF-04", True))
-    assert refusals(script) == ["Person 1 is resting already"]
+    assert refusals(script) == ["Person 1 is in rehab already"]

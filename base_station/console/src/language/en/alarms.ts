@@ -20,7 +20,7 @@ export const alarm = {
   none_open_of_member: "No open alarms.",
   no_threshold: "No measured value crossed a threshold: a button, an event or a silence raised it.",
   thresholds: "Thresholds at that time: {thresholds}.",
-  unit_unassigned: "nobody wears this unit now",
+  unit_unassigned: "this unit is unassigned now",
   unit_of: "{name} wears this unit now",
   by_other: "(who wore it before)",
   of_person: "Open alarms of this person",

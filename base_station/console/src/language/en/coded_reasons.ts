@@ -1,7 +1,7 @@
 /** Why a place is in doubt, an alarm over and an order not delivered, by the codes of their sentences. */
 
 export const coded_reason = {
-  "doubt-floor": "the floor is only {sure_fraction} sure",
+  "doubt-floor": "the floor is uncertain ({sure_fraction})",
   "doubt-heading": "heading not known yet",
   "doubt-height": "height only known to {within_m}",
   "doubt-no-message": "no message: shown at its last known position",
@@ -21,8 +21,8 @@ export const coded_reason = {
   "doubt-within": "within {within_m}",
   "order-alarm-over": "the alarm is over, or was raised anew",
   "order-all-clear": "all clear before an answer",
-  "order-mayday-again": "the wearer has called another mayday",
-  "order-mayday-cancelled": "the wearer has cancelled the mayday",
+  "order-mayday-again": "the member has called another mayday",
+  "order-mayday-cancelled": "the member has cancelled the mayday",
   "order-replaced": "a later rate replaces it",
   "order-stopped": "stopped at the station",
   "order-withdrawn": "its incident was closed",
@@ -55,7 +55,7 @@ export const coded_reason = {
   "refused-expired": "it had expired when it was sent",
   "refused-no-output": "this unit has no sounder and no light",
   "refused-no-positions": "this unit sends no positions: an agent at the station tracks for it",
-  "refused-other-mayday": "the wearer has cancelled this mayday, or called another one since",
+  "refused-other-mayday": "the member has cancelled this mayday, or called another one since",
   "refused-rate": "{rate_hz, number} Hz is not between {least_hz, number} and {most_hz, number} Hz",
   "refused-unknown": "this unit does not know this kind of command",
 } as const;

@@ -151,11 +151,11 @@ export const refusal_incident = {
   "incident-not-closed":
     "The incident is not closed: {alarms, plural, =0 {no open alarm} one {# open alarm} other {# open alarms}}, {inside, plural, =0 {nobody} one {# person} other {# people}} inside.",
   "rests-already":
-    "{name} is resting already",
+    "{name} is in rehab already",
   "works-already":
     "{name} is at work already",
   "incident-time-unfit":
-    "the time until the next {what, select, rest {rest} other {roll call}} is {shortest_s} to {longest_s}",
+    "the time until the next {what, select, rest {rehab} other {PAR}} is {shortest_s} to {longest_s}",
   "order-answered":
     "{unit, select, everybody {everybody} other {{unit}}} has acknowledged it, or never had it",
   "pin-in-future":

@@ -105,7 +105,7 @@ def test_light_has_its_reason(changes: dict[str, object], level: str, words: str
         ({"std_north_m": 2.0}, {"std_north_m": 2.1}, "amber", "only known to 5 m"),
         ({"std_east_m": 8.1}, {"std_east_m": 8.3}, "red", "only known to 20 m"),
         ({"std_down_m": 1.5}, {"std_down_m": 1.6}, "amber", "height only known to 3 m"),
-        ({"floor_probability": 0.7}, {"floor_probability": 0.69}, "amber", "only 69% sure"),
+        ({"floor_probability": 0.7}, {"floor_probability": 0.69}, "amber", "uncertain (69%)"),
         (
             {"std_north_m": 1.9, "std_east_m": 1.9},
             {"std_north_m": 1.9, "std_east_m": 1.9, "correlation_ne": -0.9},
