@@ -147,7 +147,7 @@ class Faults:
     def suffer(self, fault: str, happen: Callable[[float], None], seconds: float) -> FaultRow:
         roof = self.roof
         before = roof.decided()
-        roof.stations[0].latency()  # what was before does not count
+        roof.stations[0].forget_latency()
         happen(seconds)
         recovery_s = roof.recovery_s()
         decided = roof.decided() - before

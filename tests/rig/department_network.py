@@ -79,6 +79,10 @@ class ReportingStation:
         """From sensor to console, of what its units sent since this was asked last."""
         return msgspec.json.decode(self._ask(b"latency\n"), type=Latency)
 
+    def forget_latency(self) -> None:
+        """Leave out of ``latency`` what was sent until now, which may be nothing."""
+        self._ask(b"latency\n")
+
     def quieten(self) -> None:
         """It decides nothing more, and hands over what it has."""
         assert self._ask(b"quiet\n") == b"quiet\n"
