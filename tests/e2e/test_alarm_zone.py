@@ -118,6 +118,7 @@ def test_press_directly_after_a_change_of_the_row_is_ignored(stage: Stage) -> No
     expect(strip(page)).to_contain_text("+ No motion")
     acknowledge.click()
     station.expect_changes()
+    expect(page.locator(".notice")).to_contain_text("the press was ignored. Press again.")
     page.clock.run_for(700)
     acknowledge.click()
     station.expect_changes(*(f"/alarms/{quote(one.alarm_id)}/acknowledge" for one in (heat, still)))

@@ -1,5 +1,7 @@
 import { useRef } from "preact/hooks";
 import { MAX_ACT_MS } from "../http";
+import { t } from "../language/translate";
+import { confirmDone } from "../uiState";
 
 /** Time in which a second press is ignored. */
 export const GUARD_MS = 500;
@@ -14,6 +16,7 @@ export function useGuardedPress(place: number | string, whenNew = true): (act: (
   return (act) => (press) => {
     const byKey = press.detail === 0;
     if (byKey || performance.now() - here.current.sinceMs > GUARD_MS) act();
+    else confirmDone(t("common.press_ignored"));
   };
 }
 

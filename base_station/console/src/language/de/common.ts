@@ -13,5 +13,6 @@ export const common: Part<"common"> = {
   hint: "{what}. {action}",
   name: "Name",
   cannot_show: "{what} kann nicht angezeigt werden: {problem}",
+  press_ignored: "Die Liste hat sich gerade geändert, das Drücken blieb ohne Wirkung. Bitte noch einmal drücken.",
   not_loaded: "Dieser Teil der Seite wurde nicht geladen. Laden Sie die Seite neu.",
 };

@@ -12,5 +12,6 @@ export const common = {
   hint: "{what}. {action}",
   name: "Name",
   cannot_show: "{what} cannot be shown: {problem}",
+  press_ignored: "The list has just changed, so the press was ignored. Press again.",
   not_loaded: "This part of the page did not load. Reload the page.",
 } as const;

@@ -13,5 +13,6 @@ export const common: Part<"common"> = {
   hint: "{what}. {action}",
   name: "Nom",
   cannot_show: "{what}\u00a0: affichage impossible ({problem})",
+  press_ignored: "La liste vient de changer\u00a0: l’appui a été ignoré. Appuyez à nouveau.",
   not_loaded: "Cette partie de la page n’a pas été chargée. Rechargez la page.",
 };
