@@ -82,6 +82,11 @@ describe("the roll call", () => {
     unit("d"),
   ];
 
+  it("orders crews whose PAR is due at the same time by the number in their names", () => {
+    const crews = ["Ladder 10", "Ladder 2", "Ladder 1"].map((crew) => onDuty(crew, crew, 900_000));
+    expect(crewsOnDuty(crews, INCIDENT, 0).map(({ crew }) => crew)).toEqual(["Ladder 1", "Ladder 2", "Ladder 10"]);
+  });
+
   it("puts the most urgent crew and person first", () => {
     const crews = crewsOnDuty(units, INCIDENT, 0);
     expect(crews.map((crew) => [crew.crew, crew.par.state])).toEqual([

@@ -137,6 +137,18 @@ export function date(ms: number): string {
   return kept(Intl.DateTimeFormat, { dateStyle: "medium" } as const).format(ms);
 }
 
+let collator = new Intl.Collator(); // kept apart from the others: lists are sorted with every message
+let collatorOf = "";
+
+/** Order of two names in the language shown; numbers by value, so that Ladder 2 is before Ladder 10. */
+export function compareNames(one: string, other: string): number {
+  if (collatorOf !== locale()) {
+    collatorOf = locale();
+    collator = new Intl.Collator(collatorOf, { numeric: true });
+  }
+  return collator.compare(one, other);
+}
+
 /** Beside one another, not as a sentence: `Intl.ListFormat` puts a word before the last in some languages. */
 export function listed(words: readonly string[]): string {
   return words.join(", ");

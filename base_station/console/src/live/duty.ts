@@ -2,6 +2,7 @@
 import type { DutyView, IncidentView, UnitView } from "../wire";
 import { clockTime } from "../format";
 import { t } from "../language/translate";
+import { compareNames } from "../language/measures";
 
 export type ParState = "green" | "unconfirmed" | "warning" | "overdue";
 
@@ -54,7 +55,7 @@ export function crewsOnDuty(
   }
   return [...crews]
     .map(([crew, people]) => ({ crew, people: people.sort(byDue), par: earliest(people) }))
-    .sort((a, b) => a.par.leftMs - b.par.leftMs || (a.crew < b.crew ? -1 : 1));
+    .sort((a, b) => a.par.leftMs - b.par.leftMs || compareNames(a.crew, b.crew));
 }
 
 /** In one line: the next PAR that is due, how many are overdue, and how many not yet confirmed; null:

@@ -2,6 +2,7 @@
 import type { UnitView } from "../wire";
 import { onScene, partOf, type Part } from "./headcount";
 import { displayName, isCasualty, type Place } from "./urgency";
+import { compareNames } from "../language/measures";
 
 export type Order = "need" | "crew" | "name";
 
@@ -53,7 +54,7 @@ export function grouped(places: readonly Place[], units: readonly UnitView[], or
     crews.set(crew, [...(crews.get(crew) ?? []), place]);
   }
   return [...crews]
-    .sort(([a], [b]) => Number(a === "") - Number(b === "") || a.localeCompare(b, undefined, { numeric: true }))
+    .sort(([a], [b]) => Number(a === "") - Number(b === "") || compareNames(a, b))
     .map(([crew, of]) => groupOf(crew, of));
 }
 
@@ -62,5 +63,5 @@ function groupOf(crew: string | null, places: readonly Place[]): Group {
 }
 
 function byName(a: Place, b: Place): number {
-  return a.name.localeCompare(b.name, undefined, { numeric: true }) || (a.unitId < b.unitId ? -1 : 1);
+  return compareNames(a.name, b.name) || (a.unitId < b.unitId ? -1 : 1);
 }

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import * as api from "../api";
 import type { UnitView } from "../wire";
-import { length } from "../language/measures";
+import { compareNames, length } from "../language/measures";
 import { t } from "../language/translate";
 import { routeText } from "./routeText";
 import { displayName } from "./urgency";
@@ -102,5 +102,5 @@ export function others(units: readonly UnitView[], unitId: string): UnitView[] {
   return units
     .filter((unit) => unit.unit_id !== unitId && unit.registered)
     .filter((unit) => unit.person !== null && unit.position !== null)
-    .sort((a, b) => displayName(a).localeCompare(displayName(b)));
+    .sort((a, b) => compareNames(displayName(a), displayName(b)));
 }

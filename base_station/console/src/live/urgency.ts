@@ -1,6 +1,7 @@
 /** Urgency of members, and a list whose order is stable while it is read.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
 import { MISSED_CHECK_IN, SWITCHED_OFF } from "../format";
+import { compareNames } from "../language/measures";
 
 export type Urgency = "immediate" | "soon" | "watch" | "normal";
 
@@ -87,7 +88,7 @@ export function arrange(
   });
   return places.sort(
     (a, b) =>
-      a.rank - b.rank || a.name.localeCompare(b.name) || (a.unitId < b.unitId ? -1 : 1),
+      a.rank - b.rank || compareNames(a.name, b.name) || (a.unitId < b.unitId ? -1 : 1),
   );
 }
 

@@ -6,6 +6,7 @@ import { ALL_ALARMS, type AlarmFilter } from "../live/alarmLives";
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import { priorityWord } from "./AlarmRow";
+import { compareNames } from "../language/measures";
 
 const MINUTE_MS = 60_000;
 const WITHIN_MS = [5, 15, 60].map((count) => count * MINUTE_MS);
@@ -104,5 +105,5 @@ function distinct(values: readonly string[]): string[] {
 }
 
 function byWord(options: readonly Option[]): Option[] {
-  return [...options].sort(([, a], [, b]) => a.localeCompare(b));
+  return [...options].sort(([, a], [, b]) => compareNames(a, b));
 }

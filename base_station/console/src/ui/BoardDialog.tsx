@@ -1,7 +1,7 @@
 import { picture as shown } from "../sessions";
 import { alarmLabel, dateAndTime, floorName, minutes } from "../format";
 import { onScene, partOf } from "../live/headcount";
-import { listed } from "../language/measures";
+import { compareNames, listed } from "../language/measures";
 import { needsOf } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
@@ -69,5 +69,5 @@ function floorOf({ position }: UnitView): string {
 
 function byCrew(a: UnitView, b: UnitView): number {
   const [one, other] = [a.person?.crew ?? "", b.person?.crew ?? ""];
-  return one.localeCompare(other) || displayName(a).localeCompare(displayName(b));
+  return compareNames(one, other) || compareNames(displayName(a), displayName(b));
 }

@@ -5,6 +5,7 @@ import { rich, t } from "../language/translate";
 import "../styles/setup.css";
 import { Photo } from "./Photo";
 import { fields } from "./useLoaded";
+import { compareNames } from "../language/measures";
 
 const PERSON = "text/x-muster-person";
 
@@ -166,5 +167,5 @@ async function moveAll(people: readonly api.Person[], crew: string): Promise<voi
 }
 
 function noneLast(one: string, other: string): number {
-  return Number(one === "") - Number(other === "") || one.localeCompare(other);
+  return Number(one === "") - Number(other === "") || compareNames(one, other);
 }
