@@ -11,7 +11,7 @@ export const order: Part<"order"> = {
   all_clear: "Räumung aufgehoben",
   with_text: "{order}: {text}",
   locate_hint: "Das Gerät macht mit seinen Signalgebern auf sich aufmerksam, etwa Ton oder Licht, bis es hier oder am Gerät beendet wird.",
-  evacuate_hint: "Alle sofort heraus. Jede Einsatzkraft muss bestätigen.",
+  evacuate_hint: "Alle sofort heraus. Jede Einsatzkraft muss bestätigen, und ihr PAR ist in 3 Minuten fällig.",
   more: "{count, plural, one {# weiterer Befehl} other {# weitere Befehle}}",
   par_hint: "Fordert eine Vollzähligkeitsmeldung (PAR) an. Nur die eigene Antwort der Einsatzkraft zählt.",
   text_hint: "Jede Einsatzkraft muss bestätigen.",

@@ -11,7 +11,7 @@ export const order: Part<"order"> = {
   all_clear: "Fin d’évacuation",
   with_text: "{order}\u00a0: {text}",
   locate_hint: "Le boîtier signale sa position par ses sorties, son ou lumière par exemple, jusqu’à l’arrêt ici ou par la personne.",
-  evacuate_hint: "Fait sortir tout le monde immédiatement. Chaque personne doit confirmer.",
+  evacuate_hint: "Fait sortir tout le monde immédiatement. Chaque personne doit confirmer, et son PAR est attendu dans les 3 minutes.",
   more: "{count, plural, one {# autre ordre} other {# autres ordres}}",
   par_hint: "Demande un contrôle des effectifs (PAR). Seule la réponse de la personne elle-même compte.",
   text_hint: "Chaque personne doit confirmer.",
