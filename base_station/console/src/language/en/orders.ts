@@ -12,7 +12,7 @@ export const order = {
   locate_hint: "The unit signals its place with its outputs, such as a sounder or a light, until you or its wearer stop it.",
   evacuate_hint: "Orders everyone out at once. Each member must acknowledge, and the PAR of each is due in 3 minutes.",
   more: "{count, plural, one {# more order} other {# more orders}}",
-  par_hint: "Requests a PAR. Only the firefighter’s own answer counts.",
+  par_hint: "Requests a PAR. Only the member’s own answer counts.",
   text_hint: "Each member must acknowledge.",
   everyone: "Everyone",
   nobody_now: "{name} (nobody now)",
