@@ -78,7 +78,9 @@ class Presses:
 
 
 def take_picture(shown: Page | Locator, folder: Path, name: str) -> None:
-    """Take a picture; those of docs/howto with ``MUSTER_PICTURES=docs/howto``, in few colours."""
+    """Take a picture in few colours; one of the docs, with ``MUSTER_PICTURES`` set to its
+    folder.
+    """
     taken = io.BytesIO(shown.screenshot())
     to = Path(os.environ.get("MUSTER_PICTURES", folder)) / name
     Image.open(taken).convert("RGB").quantize(COLOURS).save(to, optimize=True)

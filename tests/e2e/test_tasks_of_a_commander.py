@@ -17,7 +17,7 @@ from playwright.sync_api import Browser, Page, expect
 from shared.bus_zenoh import UnitEndpoint
 from tests.e2e import scenes
 from tests.e2e.conftest import log_in
-from tests.e2e.console_page import Presses, close, command, menu, press, strip
+from tests.e2e.console_page import Presses, close, command, menu, press, strip, take_picture
 from tests.e2e.layout_checks import flaws
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
@@ -101,7 +101,7 @@ def test_member_who_is_down_is_shown_without_a_press(incident: Incident, tmp_pat
     expect(page.get_by_role("button", name=re.compile("^On scene"))).to_contain_text(
         str(incident.people)
     )
-    page.screenshot(path=tmp_path / f"down-{incident.people}.png")
+    take_picture(page, tmp_path, f"down-{incident.people}.png")
     assert flaws(page) == []
 
 
@@ -115,7 +115,7 @@ def test_rescue_takes_two_presses(incident: Incident, tmp_path: Path) -> None:
     ways.get_by_role("button", name="Send RIC (1)").click()
     assert presses.count() == 2
     until(lambda: incident.rescuer.texts, "the way at the unit of the rescuer")
-    page.screenshot(path=tmp_path / f"rescue-{incident.people}.png")
+    take_picture(page, tmp_path, f"rescue-{incident.people}.png")
 
 
 def test_sound_locator_takes_one_press_on_the_chosen_card(incident: Incident) -> None:
@@ -136,7 +136,7 @@ def test_evacuation_takes_two_presses_and_its_all_clear_two(
     dialog.get_by_role("button", name="Evacuate now").click()
     expect(dialog).to_contain_text(f"of {incident.people} acknowledged")
     assert presses.count() == 2
-    page.screenshot(path=tmp_path / f"evacuation-{incident.people}.png")
+    take_picture(page, tmp_path, f"evacuation-{incident.people}.png")
     assert flaws(page) == []
     presses = Presses(page)
     dialog.get_by_role("button", name="All clear").click()
@@ -165,7 +165,7 @@ def test_par_of_a_member_in_alarm_takes_three_presses(incident: Incident, tmp_pa
     row = dialog.get_by_role("listitem").filter(has_text=NAMES[DOWN])
     press(row.get_by_role("button", name="Confirm by radio"))
     page.wait_for_timeout(GUARD_MS)
-    page.screenshot(path=tmp_path / f"par-{incident.people}.png")
+    take_picture(page, tmp_path, f"par-{incident.people}.png")
     row.get_by_role("button", name="Yes, answered by radio").click()
     expect(row).to_contain_text("by radio, entered by admin")
     assert presses.count() == 3
@@ -193,7 +193,7 @@ def test_all_of_the_crowd_stand_in_lines_after_one_press(
     page.get_by_role("button", name="One line each").click()
     expect(page.locator(".card.line").first).to_be_visible()
     assert presses.count() == 1
-    page.screenshot(path=tmp_path / f"lines-{incident.people}.png")
+    take_picture(page, tmp_path, f"lines-{incident.people}.png")
     assert flaws(page) == []
     page.get_by_role("button", name="One line each").click()
 
@@ -215,6 +215,6 @@ def test_closing_names_who_is_down(incident: Incident, tmp_path: Path) -> None:
     dialog.get_by_role("button", name="Close this incident").click()
     expect(dialog).to_contain_text(f"Open alarms: {NAMES[DOWN]} (Mayday)")
     assert presses.count() == 2
-    page.screenshot(path=tmp_path / f"closing-{incident.people}.png")
+    take_picture(page, tmp_path, f"closing-{incident.people}.png")
     dialog.get_by_role("button", name="No", exact=True).click()
     close(dialog)
