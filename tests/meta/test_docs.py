@@ -12,8 +12,7 @@ import pytest
 from tests.bench.__main__ import bench_entry_points
 from tests.conftest import PROJECT_ROOT
 
-ROOT_PAGES = [PROJECT_ROOT / "README.md", PROJECT_ROOT / "CONTRIBUTING.md"]
-PAGES = [*ROOT_PAGES, *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
+PAGES = [PROJECT_ROOT / "README.md", *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
 PYPROJECT = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())
 COMMANDS = [
     *PYPROJECT["project"]["entry-points"]["muster.commands"],
