@@ -44,7 +44,7 @@ def _returns(path: str, function: str) -> Iterator[str]:
     for node in ast.walk(_tree(path)):
         if isinstance(node, ast.FunctionDef) and node.name == function:
             for one in ast.walk(node):
-                if isinstance(one, ast.Return) and isinstance(one.value, ast.Constant):
+                if isinstance(one, ast.Return) and isinstance(one.value, ast.Constant | ast.IfExp):
                     yield from _texts(one)
 
 
@@ -72,8 +72,7 @@ def counted_reasons() -> set[str]:
         _UNSETTLED,
         *FIX_FAULTS.values(),
         *(text for path in (*places, "fusion/gnss/screening.py") for text in _arguments(path)),
-        *_returns("fusion/gps_inertial.py", "predict"),
-        *_returns("fusion/gps_switching.py", "predict"),
+        *_returns("fusion/path_estimates.py", "predict"),
         *_sightings(),
         *_qualities(),
     }

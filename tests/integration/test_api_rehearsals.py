@@ -112,7 +112,7 @@ async def test_rehearsal_counts_what_other_thresholds_would_have_raised(
     ("incident", "query", "status", "code"),
     [
         ("i2", {"change": "no-motion.alarm_s=20"}, 409, "rehearsal-open"),
-        ("i9", {"change": "no-motion.alarm_s=20"}, 404, ""),
+        ("i9", {"change": "no-motion.alarm_s=20"}, 404, "incident-unknown"),
         ("i1", {}, 422, "rehearsal-wrong"),
         ("i1", {"change": "no-motion.alarm_s=2"}, 422, "rehearsal-wrong"),
         ("i1", {"change": "mayday.alarm_s=20"}, 422, "rehearsal-wrong"),
