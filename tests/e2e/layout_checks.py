@@ -31,6 +31,17 @@ _FIND = """
     }
     return { left, top, right, bottom };
   };
+  // True for a bar that stays in sight while what scrolls behind it has this element as well.
+  const sticks = (bar, element) => {
+    for (let at = bar; at; at = at.parentElement) {
+      if (at.contains(element)) return false;
+      if (getComputedStyle(at).position === "sticky") {
+        const box = at.parentElement;
+        return box.contains(element) && seen(box).bottom < box.getBoundingClientRect().bottom;
+      }
+    }
+    return false;
+  };
   // Some is there for who comes to it by keys.
   const isShown = (element) =>
     element.checkVisibility({ visibilityProperty: true }) &&
@@ -57,6 +68,7 @@ _FIND = """
       continue; // to be scrolled to
     }
     const hit = document.elementFromPoint(x, y);
+    if (sticks(hit, one)) continue; // to be scrolled to
     if (hit !== null && hit !== one && !one.contains(hit) && !hit.contains(one))
       found.push(`${said(one)} is covered by ${said(hit)}`);
   }

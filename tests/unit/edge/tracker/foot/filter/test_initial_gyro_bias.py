@@ -37,7 +37,7 @@ def reported_heading_rad(state):
 
 
 @pytest.mark.slow
-def test_what_the_filter_believes_beyond_what_can_be_told_narrows_nothing():
+def test_belief_beyond_what_was_shown_narrows_nothing():
     assert reported_heading_rad(believing(0.1)) == pytest.approx(
         SINCE_S * CONFIG.start.data_sheet_bias_std_radps
     )
@@ -68,7 +68,7 @@ def test_a_rest_shows_the_bias():
 
 
 @pytest.mark.slow
-def test_what_the_filter_does_not_know_is_reported_whatever_could_be_told():
+def test_unknown_bias_is_reported_however_much_was_shown():
     state = believing(0.5)
     inform_by_rest(state, 1e-3 * PRIOR)
     assert reported_heading_rad(state) == pytest.approx(
