@@ -28,6 +28,7 @@ ANSWERS = answers(
         PAST: scenes.INCIDENTS[0],
         f"{PAST}/alarms": scenes.PAST_ALARMS,
         "/replays": [scenes.replay("r1", begun_by="")],
+        "POST /people": scenes.PEOPLE[0],
         "POST /replays": scenes.replay("r2", begun_by="chief"),
     },
     people=scenes.PEOPLE,

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, user } from "../sessions";
 import * as api from "../api";
+import { compareNames } from "../language/measures";
 import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { useFirstField, useFocusBack } from "./Confirm";
@@ -58,7 +59,7 @@ export function PeopleDialog() {
 }
 
 function PeopleList({ people, again }: { people: readonly api.Person[] | null; again: () => void }) {
-  const crews = [...new Set((people ?? []).map(({ crew }) => crew).filter((crew) => crew !== ""))].sort();
+  const crews = [...new Set((people ?? []).map(({ crew }) => crew).filter((crew) => crew !== ""))].sort(compareNames);
   return (
     <>
       <datalist id={CREWS}>
