@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from shared.bus_zenoh import UnitEndpoint
 from tests.e2e import scenes
@@ -31,7 +31,7 @@ DOWN, RESCUER = "FF-01", "FF-02"
 NAMES = {DOWN: "Jonas Bergman", RESCUER: "Mira Okafor"}
 CREWS = {DOWN: "Engine 1", RESCUER: "RIC"}
 SOUGHT, SOUGHT_UNIT = "Member 031", unit_names(31)[-1]
-GUARD_MS = 600  # a list takes no press of somebody who meant what stood there before
+GUARD_MS = 600  # a list takes no press of a user who meant what stood there before
 START = {"north_m": -6.0, "east_m": 12.0, "std_m": 0.3, "heading_std_rad": 0.05}
 
 
@@ -93,6 +93,20 @@ def incident(
         yield Incident(page, request.param, worn[DOWN], worn[RESCUER])
 
 
+@pytest.fixture(autouse=True)
+def no_dialog(incident: Incident) -> None:
+    """Close the dialog that a failed test has left open, or all that follow would fail as well."""
+    while (dialog := incident.page.locator("dialog[open]")).count():
+        dialog.first.press("Escape")
+
+
+def answer(button: Locator) -> None:
+    """Press the answer to a question, once the page takes it for no double press."""
+    expect(button).to_be_visible()
+    button.page.wait_for_timeout(GUARD_MS)
+    button.click()
+
+
 def test_member_who_is_down_is_shown_without_a_press(incident: Incident, tmp_path: Path) -> None:
     page = incident.page
     casualty = page.get_by_role("list", name="Members who are down").get_by_role("button")
@@ -140,8 +154,7 @@ def test_evacuation_takes_two_presses_and_its_all_clear_two(
     assert flaws(page) == []
     presses = Presses(page)
     dialog.get_by_role("button", name="All clear").click()
-    page.wait_for_timeout(GUARD_MS)
-    dialog.get_by_role("button", name="Yes, all clear").click()
+    answer(dialog.get_by_role("button", name="Yes, all clear"))
     expect(dialog).to_contain_text("All clear (")
     assert presses.count() == 2
     close(dialog)
@@ -164,9 +177,9 @@ def test_par_of_a_member_in_alarm_takes_three_presses(incident: Incident, tmp_pa
     dialog = page.get_by_role("dialog", name="PAR status")
     row = dialog.get_by_role("listitem").filter(has_text=NAMES[DOWN])
     press(row.get_by_role("button", name="Confirm by radio"))
-    page.wait_for_timeout(GUARD_MS)
+    expect(row.get_by_role("button", name="Yes, answered by radio")).to_be_visible()
     take_picture(page, tmp_path, f"par-{incident.people}.png")
-    row.get_by_role("button", name="Yes, answered by radio").click()
+    answer(row.get_by_role("button", name="Yes, answered by radio"))
     expect(row).to_contain_text("by radio, entered by admin")
     assert presses.count() == 3
     close(dialog)
