@@ -8,19 +8,17 @@ records take two thirds.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import suppress
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import zstandard
 
-from shared.durable_names import sync_folder
-from shared.errors import LogError
 from shared.mcap_log.container import NONSENSE
 from shared.mcap_log.enclosures import enclosures_of
 from shared.mcap_log.identity import METADATA_NAME, PROFILE, identity_of
 from shared.mcap_log.reading import SegmentReader
-from shared.mcap_log.recovery import MAKING
+from shared.mcap_log.segment_exchange import exchange_segment
 from shared.mcap_log.segment_rebuild import RebuiltSegment
 from shared.mcap_log.writing import SegmentState
 
@@ -53,27 +51,13 @@ def pack_segment(path: Path) -> bool:
     whole or not at all; what a reader has open stays as it was.  No process may write to it
     meanwhile.  Raises LogError when the disk refuses.
     """
-    making = path.with_name(path.name + MAKING)
-    try:
-        enclosures = enclosures_of(path)
-        if enclosures.attachments or enclosures.metadata.keys() - {METADATA_NAME}:
-            return False
-        making.unlink(missing_ok=True)
-        packed = _write_packed(path, making)
-        if packed:
-            making.rename(path)
-            sync_folder(path.parent)
-    except OSError as error:
-        raise LogError(
-            f"{path} cannot be packed ({error.strerror}): free or mend the disk"
-        ) from error
-    finally:
-        with suppress(OSError):  # it is removed at the next start
-            making.unlink(missing_ok=True)
-    return packed
+    return bool(exchange_segment(path, partial(_write_packed, path), attempted="packed"))
 
 
 def _write_packed(path: Path, making: Path) -> bool:
+    enclosures = enclosures_of(path)
+    if enclosures.attachments or enclosures.metadata.keys() - {METADATA_NAME}:
+        return False
     identity = identity_of(path)
     if identity is None:
         return False

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
-from shared.durable_names import sync_folder
-from shared.errors import LogError
 from shared.mcap_log.foreign_files import identity_in_log
 from shared.mcap_log.reading import LogRecord, SegmentReader
-from shared.mcap_log.recovery import MAKING, TORN
+from shared.mcap_log.recovery import TORN
+from shared.mcap_log.segment_exchange import exchange_segment
 from shared.mcap_log.writing import Segment, SegmentPolicy
 
 Replace = Callable[[LogRecord], Sequence[LogRecord]]
@@ -31,21 +30,8 @@ def rewrite_segment(
     The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
     No process may write to it meanwhile.  Raises LogError when the disk refuses.
     """
-    making = path.with_name(path.name + MAKING)
-    try:
-        making.unlink(missing_ok=True)
-        changed = _rewritten(path, making, replace, rest, on_damage)
-        if changed:
-            making.rename(path)
-            sync_folder(path.parent)
-    except OSError as error:
-        raise LogError(
-            f"{path} cannot be written ({error.strerror}): free or mend the disk"
-        ) from error
-    finally:
-        with suppress(OSError):  # it is removed at the next start
-            making.unlink(missing_ok=True)  # the room is for what is being recorded
-    return changed
+    rewritten = partial(_rewritten, path, replace, rest, on_damage)
+    return exchange_segment(path, rewritten, attempted="written")
 
 
 def write_segment_like(model: Path, path: Path, records: Iterable[LogRecord]) -> bool:
@@ -75,10 +61,10 @@ def remove_torn(folder: Path) -> int:
 
 def _rewritten(
     path: Path,
-    making: Path,
     replace: Replace,
     rest: Callable[[], Sequence[LogRecord]],
     on_damage: Callable[[str], None],
+    making: Path,
 ) -> int:
     changed = 0
     segment = Segment(making, SegmentPolicy().chunk_bytes, identity_in_log(path).revised())
