@@ -37,6 +37,10 @@ class LogFiles(Protocol):
         """Lock that is held while complete segments are replaced."""
         ...
 
+    def flush(self) -> bool:
+        """Bring records in memory to the disk.  True if that was done in time."""
+        ...
+
     def complete_segments(self) -> Collection[Path]:
         """Segments that are not written to any more, in order, without a gap."""
         ...
@@ -53,6 +57,9 @@ class ClosedLog:
         self.folder = folder
         self.rewriting = Lock()
 
+    def flush(self) -> bool:
+        return True
+
     def complete_segments(self) -> Collection[Path]:
         return segment_paths(self.folder)
 
@@ -67,7 +74,8 @@ class LogReading:
         self._log = log
 
     def actions(self) -> Sequence[Record]:
-        """Actions of operators in the log, in order."""
+        """Actions of operators in the log, in order; with those that were in memory until now."""
+        self._log.flush()
         return list(read_log(self._log.folder, keys={_ACTIONS}))
 
     def actions_set_aside(self) -> Iterator[Record]:
