@@ -15,7 +15,7 @@ from edge.samples import Floats, ImuBatch, SensorDescription
 GRAVITY_MPS2 = 9.80665
 BUMP = np.poly1d([-64, 192, -192, 64, 0, 0, 0])  # 64 u^3 (1-u)^3
 EASE = np.poly1d([6, -15, 10, 0, 0, 0])  # 0 to 1, still at both ends
-SWAY = BUMP * np.poly1d([-2, 1])  # pitch: toe down, then toe up
+SWAY = BUMP * np.poly1d([-2, 1])  # pitch: toe up, then toe down
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Several sensors of one person, and footfalls against marks, for ``muster bench track``.
+"""Several sensors of one person, and events of gait against marks, for ``muster bench track``.
 
 The recordings have both feet and the lower back at once, and the beginning and the end of every
 swing of either foot, marked by hand.
@@ -6,6 +6,7 @@ swing of either foot, marked by hand.
 
 from __future__ import annotations
 
+import gzip
 import heapq
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,6 +18,7 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
+from edge.activity.gait_events import GaitEvents, find_gait_events
 from edge.app.track import run_tracker
 from edge.samples import Floats, ImuBatch
 from edge.sources.recording import RecordingSource
@@ -36,7 +38,7 @@ RECORDED_PLACES = {  # tracker of a person: where it has its sensors here
     "foot_and_trunk": (LEFT_FOOT, "waist"),
 }
 _FOOT_TRACKER = TRACKERS[0].name
-_LONGEST_SWING_S = 0.7  # half of it, from its middle
+_SAME_SWING_S = 0.35  # between the middle of a swing and the middle of its marks
 
 
 class _Marks(msgspec.Struct):
@@ -58,11 +60,12 @@ class Returns:
 
 
 @dataclass(frozen=True, slots=True)
-class Footfalls:
-    """Beginnings and ends of swings against the marks, less the median of each kind."""
+class GaitEventErrors:
+    """Toe-offs and initial contacts against the marks, less the median of each kind."""
 
-    marked: int
-    missed: int  # marked swings that have no swing of the tracker
+    walks: int
+    marked: int  # swings
+    missed: int
     error_median_s: float
     error_95_s: float
 
@@ -108,41 +111,56 @@ def _in_turn(sources: Mapping[str, RecordingSource]) -> Iterator[tuple[str, ImuB
         yield place, imu
 
 
-def measure_footfalls(data: Path) -> Footfalls:
-    """Compare what the foot's tracker takes for a swing with the marks, both feet of everybody."""
-    errors = []
-    marked = 0
-    for trial in _trials(data):
-        text = (trial / "trial.json").read_text(encoding="utf-8")
-        marks = msgspec.convert(json.loads(text), _Marks)  # a weight may be NaN
-        feet = {LEFT_FOOT: marks.left_swing_or_stride_s, RIGHT_FOOT: marks.right_swing_or_stride_s}
-        for place, swings_s in feet.items():
-            rows = track_places(trial, (place,), _FOOT_TRACKER)
-            errors.append(swing_errors(rows, np.array(swings_s)))
-            marked += len(swings_s)
-    found_s = np.concatenate(errors)
+def measure_gait_events(data: Path) -> list[GaitEventErrors]:
+    """Compare the events of both feet with the marks: in all walks, and in those whose three
+    sensors have as many samples (elsewhere some are missing, and the times do not show it).
+    """
+    trials = _trials(data)
+    found_s = {trial: list(_errors_of_feet(trial)) for trial in trials}
+    complete = [trial for trial in trials if _has_equal_counts(trial)]
+    return [_summary([found_s[trial] for trial in some]) for some in (trials, complete)]
+
+
+def _errors_of_feet(trial: Path) -> Iterator[Floats]:
+    """Give the errors of each foot (m, 2), NaN where a marked swing was missed."""
+    text = (trial / "trial.json").read_text(encoding="utf-8")
+    marks = msgspec.convert(json.loads(text), _Marks)  # a weight may be NaN
+    feet = {LEFT_FOOT: marks.left_swing_or_stride_s, RIGHT_FOOT: marks.right_swing_or_stride_s}
+    for place, swings_s in feet.items():
+        events = find_gait_events(track_places(trial, (place,), _FOOT_TRACKER))
+        yield event_errors(events, np.array(swings_s))
+
+
+def event_errors(events: GaitEvents, marked_s: Floats) -> Floats:
+    """Return the errors of toe-off and contact of those ``marked_s`` (m, 2), NaN where missed."""
+    found_s = np.column_stack((events.toe_off_s, events.initial_contact_s))
+    errors_s = np.full(marked_s.shape, np.nan)
+    for marked, error_s in zip(marked_s, errors_s, strict=True):
+        off_s = np.abs(found_s.mean(axis=1) - marked.mean())
+        if len(off_s) and off_s.min() < _SAME_SWING_S:
+            error_s[:] = found_s[np.argmin(off_s)] - marked
+    return errors_s
+
+
+def _summary(walks: Sequence[Sequence[Floats]]) -> GaitEventErrors:
+    all_s = np.concatenate([errors_s for walk in walks for errors_s in walk])
+    found_s = all_s[~np.isnan(all_s[:, 0])]
     errors_s = np.abs(found_s - np.median(found_s, axis=0))
-    return Footfalls(
-        marked=marked,
-        missed=marked - len(found_s),
+    return GaitEventErrors(
+        walks=len(walks),
+        marked=len(all_s),
+        missed=len(all_s) - len(found_s),
         error_median_s=float(np.median(errors_s)),
         error_95_s=float(np.quantile(errors_s, 0.95)),
     )
 
 
-def swing_errors(rows: TrackBatch, marked_s: Floats) -> Floats:
-    """Return (n, 2) errors of beginning and end of those ``marked_s`` (m, 2) that were found."""
-    changes = np.diff(rows.stationary.astype(np.int8))
-    t_s = rows.t_ns[1:] * 1e-9
-    begun_s, ended_s = t_s[changes == -1], t_s[changes == 1]
-    errors = []
-    for begin_s, end_s in marked_s:
-        middle_s = (begin_s + end_s) / 2.0
-        before = begun_s[(begun_s < middle_s) & (begun_s > middle_s - _LONGEST_SWING_S)]
-        after = ended_s[(ended_s > middle_s) & (ended_s < middle_s + _LONGEST_SWING_S)]
-        if len(before) and len(after):
-            errors.append((before[-1] - begin_s, after[0] - end_s))
-    return np.array(errors).reshape(-1, 2)
+def _has_equal_counts(trial: Path) -> bool:
+    counts = set()
+    for name in _FILES.values():
+        with gzip.open(trial / name) as lines:
+            counts.add(sum(1 for _ in lines))
+    return len(counts) == 1
 
 
 def _trials(data: Path) -> list[Path]:
@@ -169,9 +187,11 @@ def returns_table(results: Sequence[Returns]) -> Table:
     return table
 
 
-def footfalls_line(found: Footfalls) -> str:
-    return (
-        f"Swings of both feet: {found.marked} marked, {found.missed} missed; beginnings and ends "
-        f"off by {1000.0 * found.error_median_s:.0f} ms (median), "
-        f"{1000.0 * found.error_95_s:.0f} ms (95 %)"
-    )
+def gait_events_table(results: Sequence[GaitEventErrors]) -> Table:
+    table = Table(title="Toe-off and initial contact against the marks", box=box.SIMPLE_HEAD)
+    for title in ("walks", "swings", "missed", "median, ms", "95 %, ms"):
+        table.add_column(title, justify="right")
+    for one in results:
+        counts = (str(one.walks), str(one.marked), str(one.missed))
+        table.add_row(*counts, f"{1e3 * one.error_median_s:.0f}", f"{1e3 * one.error_95_s:.0f}")
+    return table

@@ -28,8 +28,8 @@ from tests.bench.tracker.honesty import honesty_table, measure_honesty
 from tests.bench.tracker.perturbed_walks import perturbed_table, score_perturbed
 from tests.bench.tracker.scoring import Score, score_track
 from tests.bench.tracker.several_sensors import (
-    footfalls_line,
-    measure_footfalls,
+    gait_events_table,
+    measure_gait_events,
     measure_returns,
     returns_table,
 )
@@ -184,9 +184,9 @@ def bench_track(
         returns = measure_returns(elsewhere)
         console.print(returns_table(returns))
         report["several_sensors"] = [asdict(one) for one in returns]
-        footfalls = measure_footfalls(elsewhere)
-        console.print(footfalls_line(footfalls))
-        report["footfalls"] = asdict(footfalls)
+        events = measure_gait_events(elsewhere)
+        console.print(gait_events_table(events))
+        report["gait_events"] = [asdict(one) for one in events]
     if simulated_elsewhere:
         places = measure_simulated_elsewhere()
         console.print(simulated_elsewhere_table(places))

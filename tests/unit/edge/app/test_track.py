@@ -10,13 +10,13 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from edge.app.track import COLUMNS, track
+from edge.app.track import COLUMNS, GAIT_COLUMNS, track
 from edge.sample_codec.codec import SampleEncoder
 from edge.sample_codec.descriptions import unit_sensor
 from edge.samples import AmbientSample, SensorBatch, SensorDescription
 from edge.storage.black_box.black_box import BlackBox
 from shared.clock import ManualClock
-from shared.errors import RecordingError, UserError
+from shared.errors import ConfigError, RecordingError, UserError
 from tests.bench.tracker.track import WIDTH, bench_track, find_trials
 from tests.rig.exact_strides import walk
 
@@ -89,6 +89,30 @@ def test_track_writes_a_line_a_sample(trial, tmp_path):
     assert len(table) == len((trial / "imu.csv").read_text().splitlines()) - 1
     assert np.linalg.norm(table[-1, 1:3]) == pytest.approx(4 * 1.3, abs=0.2)
     assert np.all(np.diff(table[:, 0]) > 0.0)
+
+
+def test_gait_has_a_line_for_each_swing(trial, tmp_path):
+    out = tmp_path / "gait.csv"
+    invoke(track, trial, "--out", tmp_path / "track.csv", "--gait", out)
+    titles, *lines = out.read_text().splitlines()
+    assert titles == GAIT_COLUMNS
+    events = np.array([[float(cell or "nan") for cell in line.split(",")] for line in lines])
+    assert len(events) >= 4
+    toe_off_s, contact_s, swing_s, stance_s = events.T
+    assert swing_s == pytest.approx(contact_s - toe_off_s, abs=0.0011)
+    assert stance_s[:-1] == pytest.approx(toe_off_s[1:] - contact_s[:-1], abs=0.0011)
+    assert np.isnan(stance_s[-1])  # nothing follows
+
+
+def test_gait_of_a_sensor_that_is_on_no_foot_is_refused(trial, tmp_path):
+    app = typer.Typer()
+    app.command()(track)
+    out, gait = tmp_path / "track.csv", tmp_path / "gait.csv"
+    options = ["--out", str(out), "--gait", str(gait), "--tracker", "body"]
+    result = CliRunner().invoke(app, [str(trial), *options])
+    assert isinstance(result.exception, ConfigError)
+    assert "sensor on a foot" in str(result.exception)
+    assert not out.exists()
 
 
 def test_output_that_cannot_be_written_is_reported(trial, tmp_path):
