@@ -74,15 +74,16 @@ class Elsewhere:
 
 def measure_elsewhere(data: Path) -> list[Elsewhere]:
     """Run every tracker that is not for a foot over the recordings below ``data``."""
+    names = [entry.name for entry in TRACKERS if FOOT not in entry.worn_on]
+    return [measure_tracker_elsewhere(data, name) for name in names]
+
+
+def measure_tracker_elsewhere(data: Path, name: str) -> Elsewhere:
+    """Run one tracker over the recordings below ``data``."""
     backs = sorted(data.glob("body/ipol/*/lower_back.csv.gz"))
     phones = _phones(data)
     if not backs or not phones:
         raise UserError(f"no body/ipol and phones below {data}; give the folder of both")
-    names = [entry.name for entry in TRACKERS if FOOT not in entry.worn_on]
-    return [_measure(name, backs, phones) for name in names]
-
-
-def _measure(name: str, backs: Sequence[Path], phones: Sequence[Path]) -> Elsewhere:
     walks = [track_back(path, name) for path in backs]
     ways = [_track_phone(path, name) for path in phones]
     waypoint_errors = [float(np.median(way.error_m)) / way.length_m for way in ways]

@@ -72,13 +72,14 @@ class GaitEventErrors:
 
 def measure_returns(data: Path) -> list[Returns]:
     """Score each foot alone, and every tracker of several sensors that these recordings have."""
-    trials = _trials(data)
     alone = [((place,), _FOOT_TRACKER) for place in (LEFT_FOOT, RIGHT_FOOT)]
     together = [(places, name) for name, places in RECORDED_PLACES.items()]
-    return [_measure(trials, places, name) for places, name in (*alone, *together)]
+    return [measure_returns_of(data, places, name) for places, name in (*alone, *together)]
 
 
-def _measure(trials: Sequence[Path], places: tuple[str, ...], name: str) -> Returns:
+def measure_returns_of(data: Path, places: tuple[str, ...], name: str) -> Returns:
+    """Score one tracker by the sensors at these places."""
+    trials = _trials(data)
     walks = [score_return(trial, track_places(trial, places, name)) for trial in trials]
     return Returns(
         tracker=name,
