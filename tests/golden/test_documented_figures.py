@@ -11,7 +11,6 @@ import pytest
 from edge.tracker.interface import FOOT
 from edge.tracker.registry import TRACKERS
 from tests.bench.tracker.documented_routes import ROUTES
-from tests.bench.tracker.several_sensors import measure_gait_events
 from tests.bench.tracker.simulated_walks import CALIBRATED, simulated_walks
 from tests.bench.tracker.track import find_trials, score_simulation, score_trial, summarise
 from tests.golden.documented_figures import figures, read_table
@@ -183,15 +182,3 @@ def test_other_tables_state_the_same(walks):
     for title, field in worse.items():
         (figure,) = figures(recorded_row[title])
         assert figure.holds(*of(title, field, "mean")), title
-
-
-def test_figures_of_gait_events_are_reproduced(worn_elsewhere):
-    *documented, _target = read_table(PAGE, "gait events")
-    body, _ = worn_elsewhere
-    for row, measured in zip(documented, measure_gait_events(body.parent), strict=True):
-        counts = [measured.walks, measured.marked, measured.missed]
-        titles = ("walks", "swings", "missed", "median, ms", "95 %, ms")
-        stated = [figures(row[title])[0] for title in titles]
-        assert [figure.value for figure in stated[:3]] == counts, row["gait events"]
-        assert stated[3].holds(1e3 * measured.error_median_s), measured
-        assert stated[4].holds(1e3 * measured.error_95_s), measured
