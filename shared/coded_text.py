@@ -7,7 +7,7 @@ one template, and its placeholders are the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import LiteralString, NamedTuple
 
 import msgspec
@@ -81,6 +81,15 @@ def with_code(text: str, code: TextCode) -> str:
     joined = CodedText(text)
     joined.code = code
     return joined
+
+
+def with_codes(texts: Sequence[str], codes: Sequence[TextCode]) -> tuple[str, ...]:
+    """Texts with the codes that were stored or sent beside them, in their order; what an earlier
+    version wrote has none.
+    """
+    return tuple(
+        with_code(text, codes[at] if at < len(codes) else NO_CODE) for at, text in enumerate(texts)
+    )
 
 
 def code_of_text(text: str) -> TextCode:

@@ -23,6 +23,7 @@ from base_station.storage.db.store import Store
 from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
+from shared.coded_text import coded
 
 
 @contextmanager
@@ -38,9 +39,10 @@ def open_copier(archive: str, data: Path, *, with_radio: bool = False) -> Iterat
         )  # fmt: skip
 
 
-NOT_FETCHED = (
+NOT_FETCHED = coded(
+    "replay-from-archive",
     "it is shown from the archive: tracks, reports and assessments need all of it, which "
-    "muster base archive fetch brings"
+    "muster base archive fetch brings",
 )
 
 
@@ -57,7 +59,7 @@ def open_archived_log(
     put_rows(store, entry.tables)
     Roster(store, SystemClock()).add_unknown_people(entry.people)
     defects = LogDefects(folder.log, (), is_written=False, on_defect=report)
-    for words in (*entry.damage, NOT_FETCHED):
+    for words in (*entry.damage_texts(), NOT_FETCHED):
         defects.note(words)
     files = {one.name: one for one in entry.files}
     log = ArchivedFeed(archive, incident_id, files, entry.log_id, defects.note_damage)

@@ -38,6 +38,7 @@ from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects, open_segment_info
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
+from shared.coded_text import coded
 from shared.errors import DatabaseAwayError, LogError, UserError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
@@ -283,7 +284,8 @@ def _folder_with_log(path: Path, scratch: Path) -> tuple[DataFolder, Mapping[Pat
             "files of that with --data"
         )
     readable = {one.path: one for one in _readable_segments(files)}
-    left_out = {file: "nothing in it can be read" for file in files if file not in readable}
+    empty = coded("foreign-empty", "nothing in it can be read")
+    left_out: dict[Path, str] = {file: empty for file in files if file not in readable}
     in_time = sorted(readable, key=lambda file: readable[file].start_ns)
     segments = [readable[file] for file in segments_of_one_log(in_time, left_out)]
     if not segments:

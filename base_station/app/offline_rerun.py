@@ -175,5 +175,5 @@ def _report(
         version=version("muster"),
         trails=trails,
         alarms=compare_alarms(raised, result.alarms),
-        notes=(*opened.notes, *sorted(aligned), *opened.log.defects()),
+        notes=(*opened.notes, *sorted(aligned), *map(str, opened.log.defects())),
     )

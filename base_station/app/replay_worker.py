@@ -62,6 +62,7 @@ from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.window import Window
 from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
+from base_station.views.text_code import coded_views
 from shared.clock import SystemClock
 from shared.errors import MusterError
 
@@ -76,7 +77,7 @@ def work(line: FrameChannel) -> None:
 
     def note_damage(what: str) -> None:
         if flaws.note_damage(what):
-            line.send(Damage(what))
+            line.send(Damage(str(what)))
 
     own = FolderFeed(Path(job.log), on_damage=note_damage)
     log = _log_of(job, own, flaws)
@@ -236,6 +237,11 @@ def _timeline(job: TimelineJob, own: FolderFeed, flaws: LogDefects, line: FrameC
     try:
         with open_database(Path(job.database)) as store:
             timeline = read_timeline(Records(store, SystemClock()), log, request)
-        line.send(TimelineFrame(msgspec.structs.replace(timeline, defects=tuple(flaws()))))
+            timeline = msgspec.structs.replace(
+                timeline,
+                defects=tuple(map(str, flaws())),
+                defect_codes=coded_views(flaws()),
+            )
+        line.send(TimelineFrame(timeline))
     except MusterError as error:
         line.send(Failure.of(error))

@@ -15,6 +15,7 @@ from base_station.archive.store import ArchiveStore
 from base_station.storage.db.archived import ArchivedFile
 from base_station.storage.db.incident_rows import Row
 from base_station.storage.db.known_people import KnownPerson
+from shared.coded_text import TextCode, with_codes
 from shared.errors import ArchiveError
 
 LOG_NAME = "incident.mcap"  # all of it, a log that stands alone (decision 119)
@@ -44,6 +45,10 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
     # Files attached to ``incident.mcap``, by name: bytes from the first until before the second.
     attached: dict[str, tuple[int, int]] = {}  # msgspec copies it
     damage: tuple[str, ...] = ()  # unreadable parts of the station's log, in words
+    damage_codes: tuple[TextCode, ...] = ()  # of ``damage``, in their order
+
+    def damage_texts(self) -> tuple[str, ...]:
+        return with_codes(self.damage, self.damage_codes)
 
     def file(self, name: str) -> ArchivedFile:
         """Entry of a file.  Raises ArchiveError if there is no file of this name."""

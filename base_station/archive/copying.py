@@ -53,6 +53,7 @@ from base_station.storage.imports import ImportFolder
 from base_station.storage.missing_segments import names_between
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import NS_PER_S, Clock
+from shared.coded_text import code_of_text
 from shared.errors import ArchiveError
 from shared.mcap_log import (
     Segment,
@@ -217,7 +218,9 @@ class ArchiveCopier:
         except CopyIncompleteError as error:
             raise _LogGoneError(str(error)) from error
         has_radio = any(one.name == RADIO_NAME for one in there.files)
-        return _CopySource(log, None, there.known_ns, has_radio=has_radio, damage=there.damage)
+        return _CopySource(
+            log, None, there.known_ns, has_radio=has_radio, damage=there.damage_texts()
+        )
 
     def _remove_leftovers(self, entry: CatalogueEntry) -> None:
         """Remove the files of the copy that this one has replaced."""
@@ -286,7 +289,7 @@ class ArchiveCopier:
 
     def _pack(self, incident: IncidentRow, source: _CopySource, scratch: Path) -> CatalogueEntry:
         """Make the files of a copy, and its entry."""
-        damage: list[str] = []
+        damage = list(source.damage)
         records, roster = Records(self._store, self._clock), Roster(self._store, self._clock)
         people = self._mentioned(incident)
         closed_ns = incident.closed_ns or 0
@@ -329,7 +332,8 @@ class ArchiveCopier:
                 for name, one in enclosures_of(scratch / LOG_NAME).attachments.items()
             },
             tables=rows_of_incident(self._store, incident),
-            damage=(*source.damage, *damage),
+            damage=tuple(map(str, damage)),
+            damage_codes=tuple(map(code_of_text, damage)),
         )
 
     def _mentioned(self, incident: IncidentRow) -> dict[str, KnownPerson]:

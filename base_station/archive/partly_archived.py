@@ -56,7 +56,7 @@ def opened_copy(archived: ArchivedLog, flaws: LogDefects | None = None) -> Archi
     files = {one.name: one for one in entry.files}
     if flaws is None:
         return ArchivedFeed(store, entry.incident_id, files, entry.log_id)
-    for words in entry.damage:
+    for words in entry.damage_texts():
         flaws.note(words)
     return ArchivedFeed(store, entry.incident_id, files, entry.log_id, flaws.note_damage)
 

@@ -36,10 +36,10 @@ from base_station.storage.db.department_tables import DepartmentTables
 from base_station.storage.db.known_people import shown_text
 from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import to_ms
-from base_station.views.text_code import text_code_view
+from base_station.views.text_code import coded_views, text_code_view
 from base_station.views.wire import AlarmParametersView
 from shared.clock import NS_PER_MS, Clock
-from shared.coded_text import Measure, Term, code_of_text, coded
+from shared.coded_text import Measure, Term, coded
 
 _MS_PER_S = 1000.0
 _S_PER_MINUTE, _MINUTES_PER_H = 60, 60
@@ -95,7 +95,7 @@ class DepartmentViews:
             people=sum(one.people for one in stations),
             problems=tuple(map(str, problems)),
             has_archive=self.has_archive,
-            problem_codes=tuple(text_code_view(code_of_text(one)) for one in problems),
+            problem_codes=coded_views(problems),
         )
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:

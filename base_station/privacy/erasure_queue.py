@@ -30,6 +30,7 @@ from shared.coded_text import (
     coded,
     text_of_error,
     with_code,
+    with_codes,
 )
 from shared.errors import MusterError, UserError
 from shared.worker import UNTIL_WOKEN
@@ -296,16 +297,9 @@ def _erase(
 
 def _progress_before(job: ErasureJob) -> ErasureProgress:
     """Counts of the attempts before."""
-    damaged = _with_codes(job.damaged, job.damaged_codes)
-    kept = _with_codes(job.kept, job.kept_codes)
+    damaged = with_codes(job.damaged, job.damaged_codes)
+    kept = with_codes(job.kept, job.kept_codes)
     return ErasureProgress(job.records, job.files, job.began, damaged, kept)
-
-
-def _with_codes(texts: tuple[str, ...], codes: tuple[TextCode, ...]) -> tuple[str, ...]:
-    """The texts of a file; those that an earlier version wrote have no codes."""
-    return tuple(
-        with_code(text, codes[at] if at < len(codes) else NO_CODE) for at, text in enumerate(texts)
-    )
 
 
 def _counts(progress: ErasureProgress) -> dict[str, object]:

@@ -32,6 +32,7 @@ from base_station.replay.solved_tracks import (
 from base_station.site.floor_grid import FloorGrid
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.views.text_code import coded_views
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import MemoryLimitError
 from shared.log_on_change import LogOnChange
@@ -230,7 +231,10 @@ class PostProcessor:
             smoothed,
             raw,
         )
-        report = msgspec.structs.replace(report, flaws=self._flaws())
+        flaws = self._flaws()
+        report = msgspec.structs.replace(
+            report, flaws=tuple(map(str, flaws)), flaw_codes=coded_views(flaws)
+        )
         is_kept = False
         if incident.closed_ns is not None:
             is_kept = self._keep(incident, known, made_ns, report).is_kept

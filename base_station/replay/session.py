@@ -18,9 +18,10 @@ from base_station.replay.record_gaps import RecordGap
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.storage.db.known_people import PersonLookup
+from base_station.views.text_code import coded_views
 from base_station.views.wire import GapView, ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
-from shared.coded_text import coded
+from shared.coded_text import coded, text_of_error
 from shared.errors import ArchiveError, UserError
 from shared.log_on_change import LogOnChange
 
@@ -128,6 +129,7 @@ class ReplaySession:
 
     def view(self) -> ReplayView:
         with self._lock:
+            flaws = self._flaws()
             return ReplayView(
                 incident_id=self._window.incident_id,
                 start_ms=self._window.start_ns // NS_PER_MS,
@@ -136,7 +138,8 @@ class ReplaySession:
                 speed=self._speed,
                 playing=self._playing,
                 seeking=self._seeking,
-                flaws=self._flaws(),
+                flaws=tuple(map(str, flaws)),
+                flaw_codes=coded_views(flaws),
                 gap=None if self._gap is None else self._gap_view(self._gap),
             )
 
@@ -154,7 +157,8 @@ class ReplaySession:
         more = len(flaws) - MOST_FLAWS
         if more <= 0:
             return flaws
-        return (*flaws[:MOST_FLAWS], f"and {more} more, which the terminal names")
+        rest = coded("flaws-more", "and {count} more, which the terminal names", count=more)
+        return (*flaws[:MOST_FLAWS], rest)
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         self._asked.append(deliver)
@@ -213,7 +217,7 @@ class ReplaySession:
         self._open()  # a reader that failed would take the place of its failure for the end
         self._player = shown
         with self._lock:
-            self._away, self._playing, self._seeking = str(error), False, False
+            self._away, self._playing, self._seeking = text_of_error(error), False, False
         self._publish()
 
     def _check_log(self) -> bool:

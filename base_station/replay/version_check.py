@@ -17,14 +17,16 @@ from base_station.core.state import ERASED_TEXT
 from base_station.replay.playback import Comparison, Decision, Playback, Record
 from shared.channels import channel_of
 from shared.codec import decode, encode
+from shared.coded_text import coded
 from shared.messages import AlarmChange, FusedPosition, Message, OperatorAction
 
 FIRST = 10_000  # records: to look at them takes half a second
 OF_INCIDENT = 100_000  # records, of which a few are looked at now and then
 SEEN_M = 0.5  # on the plan
-DIFFERS = (
+DIFFERS = coded(
+    "replay-version",
     "this version of Muster decides otherwise than the station did: places and alarms of a "
-    "replay may differ from what was shown then, which is in the log"
+    "replay may differ from what was shown then, which is in the log",
 )
 
 

@@ -80,11 +80,11 @@ class IntegrityChecker:
     def note_lacks(self, folder: Path, lacks: Iterable[LogGap]) -> None:
         """Note gaps of the log that were found at the start."""
         for lack in lacks:
-            _log.error("the log lacks something: %s", lack)
+            _log.error("the log lacks something: %s", lack.in_words())
             with self._lock:
                 self._lacks[lack.name or str(lack.number)] = lack
                 if not lack.is_file_missing:
-                    self._damaged[folder / lack.name] = str(lack)
+                    self._damaged[folder / lack.name] = lack.in_words()
                     self._cut.add(folder / lack.name)
 
     def note_foreign(self, foreign: Mapping[Path, str]) -> None:
@@ -186,6 +186,9 @@ class IntegrityChecker:
 
 
 def _in_words(lacks: Sequence[LogGap]) -> str:
-    more = len(lacks) - _MOST_NAMED
-    problems = "; ".join(map(str, lacks[:_MOST_NAMED]))
-    return f"{problems}{f'; and {more} more' if more > 0 else ''}"
+    """One text, made from its end on, so that a code of each gap is in it."""
+    named, more = [lack.in_words() for lack in lacks[:_MOST_NAMED]], len(lacks) - _MOST_NAMED
+    text = coded("gaps-more", "and {count} more", count=more) if more > 0 else named.pop()
+    for one in reversed(named):
+        text = coded("gaps-joined", "{first}; {others}", first=one, others=text)
+    return text

@@ -1,4 +1,4 @@
-"""Defects of a log, as sentences for a person; reading the log may add more."""
+"""Defects of a log, as coded sentences for a person; reading the log may add more."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from itertools import groupby
 from pathlib import Path
 
 from base_station.storage.missing_segments import KnownSegment, LogGap, log_gaps, times_of
+from shared.coded_text import coded, text_of_error
 from shared.errors import LogError
 from shared.mcap_log import (
-    LEFT_OUT,
     SegmentInfo,
     SegmentReader,
     SegmentState,
     foreign_in_words,
+    is_foreign_note,
     own_segments,
     segment_began_ns,
 )
@@ -61,8 +62,11 @@ class LogDefects:
 
     def note_damage(self, what: str) -> bool:
         """Note damage that a reader of the log has met; True if it is new."""
-        is_part = LEFT_OUT not in what
-        return self.note(f"a part of the log cannot be read: {what}" if is_part else what)
+        if is_foreign_note(what):
+            return self.note(what)
+        return self.note(
+            coded("log-part-unreadable", "a part of the log cannot be read: {part}", part=what)
+        )
 
     def note_foreign(self, path: Path, reason: str) -> bool:
         return self.note(foreign_in_words(path, reason))
@@ -104,8 +108,12 @@ class LogDefects:
                 self.note_damage(damage)
             if reader.bytes_lost:
                 self.note(
-                    f"{segment.path.name} was not ended in order: its last {reader.bytes_lost} "
-                    "bytes cannot be read"
+                    coded(
+                        "segment-torn",
+                        "{file} was not ended in order: its last {count} bytes cannot be read",
+                        file=segment.path.name,
+                        count=reader.bytes_lost,
+                    )
                 )
 
     def _check_content(self, segment: SegmentInfo) -> Iterator[bool]:
@@ -116,7 +124,7 @@ class LogDefects:
                 for damage in reader.damage:
                     self.note_damage(damage)
         except LogError as error:  # it is taken away meanwhile
-            self.note(str(error))
+            self.note(text_of_error(error))
 
 
 def _info_of(path: Path) -> SegmentInfo:
@@ -132,7 +140,7 @@ def open_segment_info(path: Path) -> SegmentInfo:
 
 def _in_words(lacks: Sequence[LogGap]) -> Iterator[str]:
     """Describe missing files in words; consecutive ones are one sentence."""
-    yield from (str(lack) for lack in lacks if not lack.is_file_missing)
+    yield from (lack.in_words() for lack in lacks if not lack.is_file_missing)
     missing = sorted((lack for lack in lacks if lack.is_file_missing), key=lambda lack: lack.number)
     for _, run in groupby(enumerate(missing), lambda one: one[1].number - one[0]):
         together = [lack for _, lack in run]
@@ -140,9 +148,18 @@ def _in_words(lacks: Sequence[LogGap]) -> Iterator[str]:
 
 
 def _missing_files(first: LogGap, last: LogGap) -> str:
-    which = (
-        f"segment {first.number} of the log is"
-        if first is last
-        else f"segments {first.number} to {last.number} of the log are"
+    what = times_of(first.from_ns, last.until_ns)
+    if first is last:
+        return coded(
+            "log-segment-missing",
+            "segment {number} of the log is missing: {what} is not known",
+            number=first.number,
+            what=what,
+        )
+    return coded(
+        "log-segments-missing",
+        "segments {first} to {last} of the log are missing: {what} is not known",
+        first=first.number,
+        last=last.number,
+        what=what,
     )
-    return f"{which} missing: {times_of(first.from_ns, last.until_ns)} is not known"

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from shared.clock import NS_PER_S
+from shared.coded_text import Measure, coded
 from shared.mcap_log import SegmentInfo, SegmentState, segment_began_ns, segment_number
 
 _KILLED_NS = 2 * NS_PER_S  # of the newest segment, which a kill may lose
@@ -51,22 +52,53 @@ class LogGap:
     def covers(self, t_ns: int) -> bool:
         return self.from_ns <= t_ns and (self.is_newest or t_ns <= self.until_ns)
 
-    def __str__(self) -> str:
-        what = self.name or f"segment {self.number}"
+    def in_words(self) -> str:
+        what = times_of(self.from_ns, self.until_ns)
+        if self.is_file_missing and not self.name:
+            return coded(
+                "gap-number-missing",
+                "segment {number} is missing: {what} is not known, or not all of it",
+                number=self.number,
+                what=what,
+            )
         if self.is_file_missing:
-            lost = f"{what} is missing"
-        elif not self.kept:
-            lost = f"{what} is empty"
-        else:
-            lost = f"{what} has {self.kept} of its {self.of} messages"
-        return f"{lost}: {times_of(self.from_ns, self.until_ns)} is not known, or not all of it"
+            return coded(
+                "gap-file-missing",
+                "{file} is missing: {what} is not known, or not all of it",
+                file=self.name,
+                what=what,
+            )
+        if not self.kept:
+            return coded(
+                "gap-file-empty",
+                "{file} is empty: {what} is not known, or not all of it",
+                file=self.name,
+                what=what,
+            )
+        return coded(
+            "gap-messages-missing",
+            "{file} has {kept} of its {of} messages: {what} is not known, or not all of it",
+            file=self.name,
+            kept=self.kept,
+            of=self.of,
+            what=what,
+        )
 
 
 def times_of(from_ns: int, until_ns: int) -> str:
     """Time span of a gap, in words; 0: unknown."""
-    since = f" from {_utc(from_ns)}" if from_ns else ""
-    until = f" until {_utc(until_ns)}" if until_ns else ""
-    return f"what happened{since}{until}"
+    if from_ns and until_ns:
+        return coded(
+            "time-between",
+            "what happened from {from_utc_s} until {until_utc_s}",
+            from_utc_s=_utc(from_ns),
+            until_utc_s=_utc(until_ns),
+        )
+    if from_ns:
+        return coded("time-since", "what happened from {from_utc_s}", from_utc_s=_utc(from_ns))
+    if until_ns:
+        return coded("time-until", "what happened until {until_utc_s}", until_utc_s=_utc(until_ns))
+    return coded("time-unknown", "what happened")
 
 
 def log_gaps(segments: Sequence[SegmentInfo], known: Collection[KnownSegment]) -> list[LogGap]:
@@ -129,5 +161,6 @@ def _between(segments: Sequence[SegmentInfo], numbers: Collection[int]) -> list[
     return lacks
 
 
-def _utc(t_ns: int) -> str:
-    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"
+def _utc(t_ns: int) -> Measure:
+    second = datetime.fromtimestamp(t_ns // NS_PER_S, UTC)
+    return Measure(t_ns / NS_PER_S, f"{second:%Y-%m-%d %H:%M:%S} UTC")

@@ -14,7 +14,12 @@ from shared.mcap_log.folder import (
     segment_paths,
     segments_within,
 )
-from shared.mcap_log.foreign_files import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
+from shared.mcap_log.foreign_files import (
+    foreign_in_words,
+    identity_in_log,
+    is_foreign_note,
+    own_segments,
+)
 from shared.mcap_log.identity import SegmentIdentity, identity_of
 from shared.mcap_log.log_membership import log_id_of, segments_of_one_log
 from shared.mcap_log.packing import can_be_packed, pack_segment
@@ -48,7 +53,6 @@ from shared.mcap_log.writing import (
 
 __all__ = [
     "DELTA_TOPIC",
-    "LEFT_OUT",
     "PLAN_TOPIC",
     "SNAPSHOT_TOPIC",
     "TRAIL_TOPIC",
@@ -80,6 +84,7 @@ __all__ = [
     "identity_of",
     "is_console",
     "is_derived",
+    "is_foreign_note",
     "location_topic",
     "log_id_of",
     "log_topic",

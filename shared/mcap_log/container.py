@@ -14,6 +14,8 @@ import zstandard
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
+from shared.coded_text import coded
+
 RECORD = struct.Struct("<BQ")  # opcode, length
 CHUNK = struct.Struct("<QQQII")  # start, end, uncompressed size, crc, length of compression
 MESSAGE = struct.Struct("<BQHIQ")  # opcode, length, channel, sequence, log time
@@ -36,13 +38,13 @@ def unpacked(chunk: bytes) -> bytes:
     _, _, size, crc, name_length = CHUNK.unpack_from(chunk)
     body = CHUNK.size + name_length
     if chunk[CHUNK.size : body] != COMPRESSION or size > CHUNK_BYTES_MAX:
-        raise ValueError("its head makes no sense")
+        raise ValueError(coded("chunk-head", "its head makes no sense"))
     try:
         data = zstandard.decompress(chunk[body + 8 :], size)
     except (zstandard.ZstdError, MemoryError) as error:
-        raise ValueError("it does not unpack") from error
+        raise ValueError(coded("chunk-packed", "it does not unpack")) from error
     if zlib.crc32(data) != crc:
-        raise ValueError("its checksum is wrong")
+        raise ValueError(coded("chunk-checksum", "its checksum is wrong"))
     return data
 
 

@@ -17,6 +17,7 @@ from statistics import median_low
 from mcap.opcode import Opcode
 
 from shared.clock import NS_PER_S
+from shared.coded_text import Measure, code_of_text, coded
 from shared.errors import LogError
 from shared.mcap_log.container import CHUNK, MESSAGE, NONSENSE, message_offsets, unpacked
 from shared.mcap_log.folder import (
@@ -29,7 +30,6 @@ from shared.mcap_log.identity import SegmentIdentity, first_chunk_at, identity_o
 from shared.mcap_log.log_membership import log_id_of, segments_of_one_log
 from shared.mcap_log.segment_file import SegmentFile
 
-LEFT_OUT = "is no segment of this log and is left out"
 _LAST_NS = 3600 * NS_PER_S  # of one that none follows, so much may be lost at its beginning
 
 
@@ -60,17 +60,27 @@ def candidates(folder: Path, foreign: dict[Path, str]) -> list[tuple[Path, Path 
     """Those that may be of one log by their heads and names, each with the one that follows; the
     others go to ``foreign``.
     """
-    foreign |= dict.fromkeys(unnumbered_paths(folder), "its name is not that of a segment")
+    unnamed = coded("foreign-name", "its name is not that of a segment")
+    foreign |= dict.fromkeys(unnumbered_paths(folder), unnamed)
     paths = segments_of_one_log(segment_paths(folder), foreign)
     in_order = _in_order(_one_a_number(paths))
-    foreign |= {
-        path: "its name does not go with the others" for path in paths if path not in set(in_order)
-    }
+    unfit = coded("foreign-order", "its name does not go with the others")
+    foreign |= dict.fromkeys([path for path in paths if path not in set(in_order)], unfit)
     return list(zip_longest(in_order, in_order[1:]))
 
 
 def foreign_in_words(path: Path, reason: str) -> str:
-    return f"{path.name} {LEFT_OUT}: {reason}"
+    return coded(
+        "segment-foreign",
+        "{file} is no segment of this log and is left out: {reason}",
+        file=path.name,
+        reason=reason,
+    )
+
+
+def is_foreign_note(note: str) -> bool:
+    """True for a text of ``foreign_in_words``."""
+    return code_of_text(note).code == "segment-foreign"
 
 
 def log_end(folder: Path) -> LogEnd:
@@ -123,7 +133,11 @@ def foreign_by_content(path: Path, following: Path | None) -> str:
         file.close()
     until_ns = segment_began_ns(following) if following else began_ns + _LAST_NS
     if not began_ns <= first_ns < until_ns + NS_PER_S:  # what it began with may be lost
-        return f"its records begin at {_utc(first_ns)}, which is not when its name says"
+        return coded(
+            "foreign-time",
+            "its records begin at {began_utc_s}, which is not when its name says",
+            began_utc_s=Measure(first_ns / NS_PER_S, _utc(first_ns)),
+        )
     return ""
 
 

@@ -9,11 +9,15 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from shared.coded_text import coded
 from shared.mcap_log.folder import segment_number
 from shared.mcap_log.identity import PROFILE, SegmentIdentity, identity_of
 
-_OTHER_LOG = "it is of another log"
-_OLDER = "an earlier version of Muster wrote it, so that it cannot go on behind this log"
+_OTHER_LOG = coded("foreign-log", "it is of another log")
+_OLDER = coded(
+    "foreign-version",
+    "an earlier version of Muster wrote it, so that it cannot go on behind this log",
+)
 
 _Heads = Mapping[Path, SegmentIdentity | None]  # None: damaged, which any segment may be
 
@@ -72,7 +76,16 @@ def _reason(head: SegmentIdentity | None, log_id: str, *, is_before: bool) -> st
     if head is None:
         return ""
     if head.profile != PROFILE:
-        return f"it was written by another program ({head.profile or 'which does not say so'})"
+        if not head.profile:
+            return coded(
+                "foreign-unnamed-program",
+                "it was written by another program (which does not say so)",
+            )
+        return coded(
+            "foreign-program",
+            "it was written by another program ({program})",
+            program=head.profile,
+        )
     if head.log_id:
         return "" if head.log_id == log_id else _OTHER_LOG
     return "" if is_before else _OLDER

@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Lock
 
 from shared.mcap_log.byte_ranges import SegmentRanges
-from shared.mcap_log.segment_file import SegmentFile
+from shared.mcap_log.segment_file import SegmentFile, behind_end
 
 FetchRange = Callable[[int, int], bytes]  # bytes from an offset until before another one
 _AHEAD_BYTES = 1 << 20  # read ahead, for the next chunks
@@ -54,7 +54,7 @@ class RangedSegmentFile(SegmentFile):
 
     def read(self, offset: int, count: int) -> bytes:
         if offset + count > self.size:
-            raise ValueError("the file ends before it")
+            raise behind_end()
         if count == 0:
             return b""
         first, last = self._block_at(offset), self._block_at(offset + count - 1)

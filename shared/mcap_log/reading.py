@@ -8,6 +8,7 @@ from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
 
+from shared.coded_text import coded, text_of_error
 from shared.mcap_log.container import (
     CHUNK,
     INDEX_ENTRY,
@@ -179,7 +180,14 @@ class SegmentReader:
             elif topic not in known:
                 unknown += 1
         if unknown:
-            self._file.note(f"{unknown} records whose key was in a damaged part are lost")
+            self._file.note(
+                coded(
+                    "segment-keys-lost",
+                    "{file}: {count} records whose key was in a damaged part are lost",
+                    file=self.path.name,
+                    count=unknown,
+                )
+            )
 
     def _lacks(self, chunk: Chunk, keys: Container[str] | None) -> bool:
         """True where the chunk's index has none of the topics: it need not be unpacked."""
@@ -195,7 +203,15 @@ class SegmentReader:
             _, length = self._file.record_at(chunk.offset)
             return unpacked(self._file.read(chunk.offset + 9, length))
         except NONSENSE as error:
-            self._file.note(f"the chunk at byte {chunk.offset} is lost ({error})")
+            self._file.note(
+                coded(
+                    "segment-chunk-lost",
+                    "{file}: the chunk at byte {offset} is lost ({reason})",
+                    file=self.path.name,
+                    offset=chunk.offset,
+                    reason=text_of_error(error),
+                )
+            )
             return b""
 
     def _indexed_offsets(self, chunk: Chunk, keys: Container[str], data: bytes) -> list[int] | None:
@@ -212,7 +228,12 @@ class SegmentReader:
                     offsets += self._index_entries(topic, at, data)
         except NONSENSE:
             self._file.note(
-                f"the index of the chunk at byte {chunk.offset} is damaged; read without it"
+                coded(
+                    "segment-index",
+                    "{file}: the index of the chunk at byte {offset} is damaged; read without it",
+                    file=self.path.name,
+                    offset=chunk.offset,
+                )
             )
             return None
         return sorted(offsets)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
+from shared.coded_text import coded
 from shared.mcap_log.container import (
     BETWEEN_CHUNKS,
     CHUNK,
@@ -23,8 +24,6 @@ from shared.mcap_log.container import (
     unpacked,
 )
 from shared.mcap_log.segment_file import SegmentFile
-
-_MADE_AGAIN = "its table of contents is damaged and was made again"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ def _from_summary(file: SegmentFile) -> Contents | None:
     try:
         return _read_summary(file)
     except NONSENSE:
-        file.note(_MADE_AGAIN)
+        _note_contents(file)
         return None
 
 
@@ -70,7 +69,7 @@ def _read_summary(file: SegmentFile) -> Contents | None:
         return None
     summary = file.read(start, file.size - FOOTER_BYTES - start)
     if zlib.crc32(footer[: 9 + 16], zlib.crc32(summary)) != expected_crc:
-        file.note(_MADE_AGAIN)
+        _note_contents(file)
         return None
     contents = Contents(is_complete=True, readable_bytes=file.size, counts={})
     for opcode, body in records_in(summary):
@@ -86,6 +85,16 @@ def _read_summary(file: SegmentFile) -> Contents | None:
     return contents
 
 
+def _note_contents(file: SegmentFile) -> None:
+    file.note(
+        coded(
+            "segment-contents",
+            "{file}: its table of contents is damaged and was made again",
+            file=file.path.name,
+        )
+    )
+
+
 def _from_walk(file: SegmentFile) -> Contents:
     """The contents of a file without an end, as far as it goes."""
     contents = Contents()
@@ -99,7 +108,15 @@ def _from_walk(file: SegmentFile) -> Contents:
                 if _is_behind_chunks(file, offset):
                     contents.readable_bytes = file.size
                 break
-            file.note(f"bytes {offset} to {found} make no sense")
+            file.note(
+                coded(
+                    "segment-bytes",
+                    "{file}: bytes {offset} to {until} make no sense",
+                    file=file.path.name,
+                    offset=offset,
+                    until=found,
+                )
+            )
             offset = found
             continue
         if chunk is not None:

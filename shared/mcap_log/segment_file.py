@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import BinaryIO
 
+from shared.coded_text import coded
 from shared.errors import LogError
 from shared.mcap_log.container import RECORD
 
@@ -26,11 +27,25 @@ class SegmentFile:
         try:
             self._file: BinaryIO = path.open("rb")
         except FileNotFoundError as error:
-            raise LogError(f"{path} cannot be read: {error.strerror}") from error
+            raise LogError(
+                coded(
+                    "segment-gone",
+                    "{path} cannot be read: {error}",
+                    path=str(path),
+                    error=str(error.strerror),
+                )
+            ) from error
         except OSError as error:
             self._file = Path(os.devnull).open("rb")  # noqa: SIM115 - until ``close``
             self.is_given = False
-            self.note(f"the disk does not give it ({error.strerror})")
+            self.note(
+                coded(
+                    "segment-unreadable",
+                    "{file}: the disk does not give it ({error})",
+                    file=path.name,
+                    error=str(error.strerror),
+                )
+            )
         self.size = os.fstat(self._file.fileno()).st_size  # what is written later is not read
 
     def close(self) -> None:
@@ -44,14 +59,22 @@ class SegmentFile:
     def read(self, offset: int, count: int) -> bytes:
         """Raises ValueError where the file ends before it or the disk does not give it."""
         if offset + count > self.size:  # a damaged length may be more than any memory holds
-            raise ValueError("the file ends before it")
+            raise behind_end()
         try:
             data = os.pread(self._file.fileno(), count, offset)
         except OSError as error:
-            self.note("the disk does not give all of it")
-            raise ValueError(f"the disk does not give it: {error}") from error
+            self.note(
+                coded(
+                    "segment-unreadable-part",
+                    "{file}: the disk does not give all of it",
+                    file=self.path.name,
+                )
+            )
+            raise ValueError(
+                coded("bytes-unreadable", "the disk does not give it: {error}", error=str(error))
+            ) from error
         if len(data) < count:
-            raise ValueError("the file was made shorter meanwhile")
+            raise ValueError(coded("bytes-cut", "the file was made shorter meanwhile"))
         return data
 
     def read_from(self, offset: int) -> bytes:
@@ -68,7 +91,11 @@ class SegmentFile:
         except ValueError:
             return bytes(end - begin)
 
-    def note(self, what: str) -> None:
-        note = f"{self.path.name}: {what}"
-        if note not in self.damage:
-            self.damage.append(note)
+    def note(self, damage: str) -> None:
+        """``damage``: a coded text that names the file."""
+        if damage not in self.damage:
+            self.damage.append(damage)
+
+
+def behind_end() -> ValueError:
+    return ValueError(coded("bytes-behind-end", "the file ends before it"))

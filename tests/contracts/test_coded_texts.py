@@ -33,6 +33,7 @@ PARTS = (
     "connection_reasons",
     "dispatch_warnings",
     "import_warnings",
+    "log_defects",
     *(
         f"refusals_{area}"
         for area in ("access", "people", "incident", "plan", "past", "station", "form")

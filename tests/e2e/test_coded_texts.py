@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import msgspec
 from playwright.sync_api import Page, expect
 
+from base_station.storage.missing_segments import LogGap
 from base_station.views import wire
+from base_station.views.text_code import coded_views
+from shared.coded_text import coded
 from tests.e2e import scenes
 from tests.e2e.stage import ANSWERS, PAST, Stage
+from tests.rig.small_log import T0_NS
 
 FAULT = wire.AlarmParametersView(
     member="Jonas Bergman",
@@ -87,3 +92,38 @@ def test_why_a_unit_refused_an_order_is_shown_in_german(stage: Stage, tmp_path: 
     expect(dialog).to_contain_text("beim Senden schon abgelaufen")
     expect(dialog).to_contain_text("kaputt")
     page.screenshot(path=tmp_path / "refused_de.png")
+
+
+def test_defects_of_the_log_of_a_replay_are_shown_in_german(stage: Stage, tmp_path: Path) -> None:
+    """With their reasons; one of an earlier version, which has no code, as it came."""
+    unreadable = coded(
+        "log-part-unreadable",
+        "a part of the log cannot be read: {part}",
+        part=coded(
+            "segment-chunk-lost",
+            "{file}: the chunk at byte {offset} is lost ({reason})",
+            file="000002.mcap",
+            offset=4096,
+            reason=coded("chunk-checksum", "its checksum is wrong"),
+        ),
+    )
+    defects = [LogGap(3, "", 0, T0_NS, is_file_missing=True).in_words(), unreadable, "as it came"]
+    shown = scenes.past()
+    assert shown.replay is not None
+    replay = msgspec.structs.replace(
+        shown.replay, flaws=tuple(map(str, defects)), flaw_codes=coded_views(defects)
+    )
+    page, _ = stage.open(msgspec.structs.replace(shown, replay=replay))
+    in_german(page)
+    page.locator("button.flaws").click()
+    listed = page.get_by_role("dialog").get_by_role("listitem")
+    expect(listed).to_have_count(3)
+    expect(listed.nth(0)).to_contain_text(
+        re.compile(r"Segment 3 fehlt: was bis zum 14\.11\.2023, \d\d:13 geschah, ist nicht")
+    )
+    expect(listed.nth(1)).to_have_text(
+        "ein Teil des Logs ist nicht lesbar: 000002.mcap: der Block bei Byte 4.096 ist verloren "
+        "(die Prüfsumme ist falsch)"
+    )
+    expect(listed.nth(2)).to_have_text("as it came")
+    page.screenshot(path=tmp_path / "flaws_de.png")

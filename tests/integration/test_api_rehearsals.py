@@ -144,4 +144,8 @@ async def test_damaged_log_is_rehearsed_as_far_as_it_is_readable(
     )
     status, found = await answer(station, "i1/rehearsal", change="no-motion.alarm_s=20")
     assert status == 200, found
-    assert any(damaged.name in one for one in found["flaws"])
+    coded = dict(zip(found["flaws"], found["flaw_codes"], strict=True))
+    parts = [one for flaw, one in coded.items() if damaged.name in flaw]
+    assert parts
+    for one in parts:
+        assert (one["code"], one["texts"]["part:file"]) == ("log-part-unreadable", damaged.name)

@@ -147,6 +147,9 @@ def test_missing_segments_are_in_the_report(
     again = read_report(kept)
     assert again is not None
     assert again.flaws == report.flaws
+    codes = [one.code for one in again.flaw_codes]
+    assert codes == ["segment-foreign", "log-segment-missing"]
+    assert again.flaw_codes[0].texts["reason:"] == "foreign-log"
 
 
 def test_result_of_an_open_incident_is_not_stored(

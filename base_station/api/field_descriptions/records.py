@@ -49,6 +49,7 @@ FIELDS: Mapping[str, str] = {
     "seeking": "Whether it is still on the way to at_ms: what is shown is of another time.",
     "gap": "The gap of the record that the replay is in: what is shown is of before; null: none.",
     "flaws": "Why not all is shown as it was, in sentences.",
+    "flaw_codes": "Codes of the flaws, in their order, for texts in other languages.",
     "ReplayChange.at_ms": "Where to go on from; null: where it stands.",
     "ReplayChange.speed": "The new speed; null: as before.",
     "ReplayChange.playing": "Whether time goes on; null: as before.",

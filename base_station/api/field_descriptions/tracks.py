@@ -49,6 +49,8 @@ FIELDS: Mapping[str, str] = {
     "TimelineAnswer.radio_gaps_ms": "Times without a message for longer than 10 s: "
     "[from_ms, until_ms].",
     "TimelineAnswer.defects": "Parts of the log that cannot be read, in words.",
+    "TimelineAnswer.defect_codes": "Codes of the defects, in their order, for texts in other "
+    "languages.",
     "TimelineColumn.t_ms": "Times, not descending.",
     "TimelineColumn.values": "At most two for a bucket, the least and the greatest; null: a gap, "
     "in which nothing is known.",

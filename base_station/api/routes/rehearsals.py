@@ -23,6 +23,7 @@ from base_station.report.thresholds_in_force import thresholds_in_force
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.window import FOREVER_NS
 from base_station.views.answer import Answer
+from base_station.views.wire import TextCodeView
 from shared.coded_text import coded, text_of_error
 from shared.errors import ConfigError, LogError, StoreError, UserError
 
@@ -51,6 +52,7 @@ class RehearsalAnswer(Answer, frozen=True):
     points: tuple[RehearsedPoint, ...]
     wearers: dict[str, tuple[str, ...]]
     flaws: tuple[str, ...]
+    flaw_codes: tuple[TextCodeView, ...]
 
 
 @router.get("/incidents/{incident_id}/thresholds")
@@ -137,4 +139,5 @@ def _rehearse(
         points=report.points,
         wearers={unit_id: tuple(names) for unit_id, names in worn.items()},
         flaws=report.flaws,
+        flaw_codes=report.flaw_codes,
     )

@@ -17,6 +17,7 @@ from base_station.replay.timelines.downsampling import Column
 from base_station.replay.timelines.unit_timeline import MAX_SPAN_NS, TimelineRequest
 from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
+from base_station.views.wire import TextCodeView
 from shared.clock import NS_PER_MS
 from shared.coded_text import coded, text_of_error
 from shared.errors import LogError, StoreError
@@ -46,6 +47,7 @@ class TimelineAnswer(Answer, frozen=True):
     silence_s: TimelineColumn
     radio_gaps_ms: tuple[tuple[int, int], ...]
     defects: tuple[str, ...]
+    defect_codes: tuple[TextCodeView, ...]
 
 
 @router.get("/units/{unit_id}/timeline", response_model=TimelineAnswer)

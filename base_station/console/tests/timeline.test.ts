@@ -27,6 +27,7 @@ const TIMELINE: TimelineAnswer = {
   silence_s: EMPTY,
   radio_gaps_ms: [],
   defects: [],
+  defect_codes: [],
 };
 
 function strip(column: string) {

@@ -24,6 +24,7 @@ from base_station.replay.assessment.figures import (
 )
 from base_station.storage.db.records import TrackSample
 from base_station.views.answer import Answer
+from base_station.views.wire import TextCodeView
 from shared.clock import NS_PER_S
 
 AWAY_M = 15.0  # a wearer who was so far from the beginning
@@ -81,6 +82,7 @@ class IncidentReport(Answer, frozen=True):
     stated: Figures | None  # over all units
     against_smoothed: Figures | None
     flaws: tuple[str, ...] = ()  # of the log that it was made of
+    flaw_codes: tuple[TextCodeView, ...] = ()  # of ``flaws``, in their order
     is_newest: bool = True  # False: more of it is coming out of a journal; not kept
 
 

@@ -32,6 +32,7 @@ from base_station.replay.rehearsal.report import (
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import Window
+from base_station.views.text_code import coded_views
 from shared.clock import NS_PER_S
 
 Progress = Callable[[float], None]
@@ -76,12 +77,14 @@ class Rehearser:
 
             passes.append(self._pass(incident, rules, points, within))
         rehearsed = tuple(one.incident for one in passes)
+        flaws = dict.fromkeys(flaw for one in passes for flaw in one.flaws)
         worn_h = sum(one.worn_h for one in rehearsed)
         return RehearsalReport(
             rehearsed,
             tuple(_point(rules, number, passes, worn_h) for number in range(len(points))),
             swept,
-            tuple(dict.fromkeys(flaw for one in passes for flaw in one.flaws)),
+            tuple(map(str, flaws)),
+            coded_views(flaws),
         )
 
     def _pass(

@@ -9,6 +9,7 @@ from base_station.core.alarms.interface import AlarmRule
 from base_station.core.alarms.thresholds import Thresholds
 from base_station.replay.rehearsal.episodes import EpisodeOutcome, EpisodePair
 from base_station.views.answer import Answer
+from base_station.views.wire import TextCodeView
 from shared.clock import NS_PER_MS, NS_PER_S
 
 
@@ -65,6 +66,7 @@ class RehearsalReport(Answer, frozen=True):
     points: tuple[RehearsedPoint, ...]  # one, or those of a sweep
     swept: str = ""  # the threshold that a sweep changes
     flaws: tuple[str, ...] = ()  # of the record: its missing parts
+    flaw_codes: tuple[TextCodeView, ...] = ()  # of ``flaws``, in their order
 
     @property
     def worn_h(self) -> float:

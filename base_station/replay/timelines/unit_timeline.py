@@ -17,6 +17,7 @@ from base_station.replay.radio_contact import CONTACT_CHANNELS, GAP_NS, SentTime
 from base_station.replay.timelines.downsampling import Column, MinMaxBuckets
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import Window
+from base_station.views.wire import TextCodeView
 from shared.channels import STATUS, TEMPERATURE, backfilled_key, is_backfilled
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.mcap_log import LogRecord
@@ -40,6 +41,7 @@ class UnitTimeline(msgspec.Struct, frozen=True):
     silence_s: Column  # before each message that came live
     radio_gaps_ms: tuple[tuple[int, int], ...] = ()  # without a message for longer than 10 s
     defects: tuple[str, ...] = ()  # of the log, in words
+    defect_codes: tuple[TextCodeView, ...] = ()  # of ``defects``, in their order
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base_station.views.answer import Answer
+from base_station.views.wire.text_code import TextCodeView
 
 
 class GapView(Answer, frozen=True):
@@ -23,4 +24,5 @@ class ReplayView(Answer, frozen=True):
     playing: bool
     seeking: bool = False  # on the way to ``at_ms``; the shown state is of another time
     flaws: tuple[str, ...] = ()  # reason why parts are not shown as recorded, in words
+    flaw_codes: tuple[TextCodeView, ...] = ()  # of ``flaws``, in their order
     gap: GapView | None = None  # around its time: the shown state is of before

@@ -132,6 +132,7 @@ export interface IncidentReport {
   stated: Figures | null;
   against_smoothed: Figures | null;
   flaws: string[];
+  flaw_codes: TextCodeView[];
   is_newest: boolean;
 }
 
@@ -220,6 +221,7 @@ export interface RehearsalAnswer {
   points: RehearsedPoint[];
   wearers: Record<string, string[]>;
   flaws: string[];
+  flaw_codes: TextCodeView[];
 }
 
 export interface RehearsedPoint {

@@ -3,6 +3,7 @@
  * Generated from the OpenAPI document of the station, which describes every field; after a change
  * there run `python -m tests.rig.console_types`.
  */
+import type { TextCodeView } from "./common";
 
 export interface Format {
   name: string;
@@ -29,6 +30,7 @@ export interface Replay {
   playing: boolean;
   seeking: boolean;
   flaws: string[];
+  flaw_codes: TextCodeView[];
   gap: GapView | null;
   replay_id: string;
   begun_by: string;
@@ -54,6 +56,7 @@ export interface TimelineAnswer {
   silence_s: TimelineColumn;
   radio_gaps_ms: [number, number][];
   defects: string[];
+  defect_codes: TextCodeView[];
 }
 
 export interface TimelineColumn {

@@ -17,6 +17,7 @@ const PARTS = [
   "connection_reason",
   "dispatch_warning",
   "import_warning",
+  "log_defect",
   "refusal_access",
   "refusal_people",
   "refusal_incident",

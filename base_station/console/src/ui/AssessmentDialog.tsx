@@ -18,6 +18,7 @@ import {
   type TrustSeconds,
 } from "../assessment";
 import { duration, percent, positioningReason } from "../format";
+import { codedTexts } from "../live/codedText";
 import { length, listed } from "../language/measures";
 import { t } from "../language/translate";
 import { Columns } from "./Columns";
@@ -55,7 +56,7 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
   return (
     <>
       {!report.is_newest && <p class="warned">{t("assessment.late")}</p>}
-      {report.flaws.map((flaw) => (
+      {codedTexts(report.flaws, report.flaw_codes).map((flaw) => (
         <p key={flaw} class="warned">
           {flaw}
         </p>

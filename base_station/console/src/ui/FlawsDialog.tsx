@@ -1,10 +1,12 @@
 import { picture } from "../sessions";
+import { codedTexts } from "../live/codedText";
 import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
 
 /** Messages of its command in the terminal, for users of the console. */
 export function FlawsDialog() {
-  const flaws = picture.value?.replay.value?.flaws ?? [];
+  const replay = picture.value?.replay.value;
+  const flaws = codedTexts(replay?.flaws ?? [], replay?.flaw_codes);
   return (
     <Dialog title={t("past.flaws")}>
       <ul class="problems">

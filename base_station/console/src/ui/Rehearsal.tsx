@@ -3,6 +3,7 @@ import type { RehearsalAnswer, ThresholdAnswer } from "../answers";
 import * as api from "../api";
 import { ruleWord } from "../format";
 import { listed, number } from "../language/measures";
+import { codedTexts } from "../live/codedText";
 import {
   CHART_HEIGHT,
   CHART_WIDTH,
@@ -159,7 +160,7 @@ function Outcome({ outcome }: { outcome: RehearsalAnswer | "running" | "failed" 
   const count = Object.values(outcome.live_alarms).reduce((sum, one) => sum + one, 0);
   return (
     <>
-      {outcome.flaws.map((flaw) => (
+      {codedTexts(outcome.flaws, outcome.flaw_codes).map((flaw) => (
         <p key={flaw} class="warned">
           {flaw}
         </p>

@@ -2,7 +2,7 @@ import { besideLive, liveIsPast, stopReplay, type Replay } from "../sessions";
 import { assess, openDialog } from "../uiState";
 import type { Picture } from "../live/picture";
 import { dateAndTime, timeSince, zone } from "../format";
-import { problemsOf } from "../live/codedText";
+import { codedTexts, problemsOf } from "../live/codedText";
 import type { GapView } from "../wire";
 import { t } from "../language/translate";
 import { Icon } from "./Icon";
@@ -27,7 +27,7 @@ export function ReplayBar({ replay, live }: Props) {
           zone: zone(replay.incident.opened_ms),
         })}
       </span>
-      {state && <Flaws flaws={state.flaws} />}
+      {state && <Flaws flaws={codedTexts(state.flaws, state.flaw_codes)} />}
       {state?.gap && <Gap gap={state.gap} startMs={state.start_ms} />}
       <button
         type="button"

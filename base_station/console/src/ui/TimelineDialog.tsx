@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
 import { timeSince } from "../format";
 import { date } from "../language/measures";
+import { codedTexts } from "../live/codedText";
 import { displayName } from "../live/urgency";
 import { attempt, picture, replay, steer } from "../sessions";
 import type { Charts } from "../timeline/charts";
@@ -79,7 +80,7 @@ export function UnitTimeline({ unitId, only }: UnitTimelineProps) {
         {isReplay() && ` ${t("timeline.hint_replay")}`}
         <span role="status">{asking.value && ` ${t("timeline.reading")}`}</span>
       </p>
-      {timeline.value?.defects.map((defect) => (
+      {codedTexts(timeline.value?.defects ?? [], timeline.value?.defect_codes).map((defect) => (
         <p key={defect} class="warned">
           {defect}
         </p>

@@ -91,5 +91,6 @@ export interface ReplayView {
   playing: boolean;
   seeking: boolean;
   flaws: string[];
+  flaw_codes: TextCodeView[];
   gap: GapView | null;
 }

@@ -9,13 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from base_station.exporters.incident import incident_tracks
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.assessment.report import with_people
 from base_station.replay.playback import Archive, Record
-from base_station.replay.post_processing import LATELY_NS, PostProcessor
+from base_station.replay.post_processing import LATELY_NS, PostProcessor, read_report
 from base_station.replay.rebuild import project_log
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.models import IncidentRow
@@ -363,3 +364,18 @@ def test_assessment_compares_shown_places_with_the_smoothed_trail(past: ClosedIn
     assert two.pin_residuals == ()
     assert one.loop_closure_m is not None
     assert one.walked_m == pytest.approx(300.0, rel=0.05)
+
+
+def test_report_that_an_earlier_version_kept_has_flaws_without_codes() -> None:
+    kept = {
+        "incident_id": "i1",
+        "smoother": "rts",
+        "made_ms": 1,
+        "units": (),
+        "stated": None,
+        "against_smoothed": None,
+        "flaws": ("segment 2 of the log is missing",),
+    }
+    report = read_report(msgspec.msgpack.encode(kept))
+    assert report is not None
+    assert (report.flaws, report.flaw_codes) == (("segment 2 of the log is missing",), ())

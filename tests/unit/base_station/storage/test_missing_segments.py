@@ -47,7 +47,7 @@ def test_missing_segment_is_named_with_its_times() -> None:
     (lack,) = log_gaps([WHOLE[0], *WHOLE[2:]], KNOWN)
     assert (lack.number, lack.from_ns, lack.until_ns) == (2, at(10), at(19))
     assert lack.is_file_missing
-    assert str(lack) == (
+    assert lack.in_words() == (
         f"{WHOLE[1].path.name} is missing: what happened from 2023-11-14 22:13:30 UTC until "
         "2023-11-14 22:13:39 UTC is not known, or not all of it"
     )
