@@ -64,9 +64,8 @@ class WearerConfig:
     """Measures of the wearer, for the trackers that use them; None: not measured."""
 
     height_m: Annotated[float, Meta(ge=1.0, le=2.5)] | None = None
-    leg_length_m: Annotated[float, Meta(ge=0.4, le=1.4)] | None = (
-        None  # hip joint to sole, in shoes
-    )
+    # Hip joint to sole, in shoes.  One that nobody has stops no unit: it is reported and not used.
+    leg_length_m: Annotated[float, Meta(ge=0.0, le=1000.0)] | None = None
 
 
 @dataclass(frozen=True, slots=True)

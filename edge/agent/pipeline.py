@@ -228,14 +228,21 @@ class TrackerPipeline:
         return self._positions.push(track, timeline)
 
     def _follow_choice(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
-        """Return the description that names the tracker, once the tracker has chosen itself."""
+        """Return the description that names the tracker, once the tracker has chosen itself, and
+        what does not fit it.
+        """
         tracker = self._tracker
         if not isinstance(tracker, ChoosesTracker) or tracker.choice is self._choice:
             return []
         self._choice = tracker.choice
-        if self._choice is not None:
-            self._check_mounting(self._choice.foot_sensor)
-        return [self._describe(_last_ns(batch, timeline))]
+        if self._choice is None:
+            return []
+        self._check_mounting(self._choice.foot_sensor)
+        mono_ns = _last_ns(batch, timeline)
+        return [
+            self._describe(mono_ns),
+            *(self._event(EventKind.SENSOR_FAULT, mono_ns, note) for note in self._choice.notes),
+        ]
 
     def _check_mounting(self, foot_sensor: str | None) -> None:
         self._foot_sensor = foot_sensor

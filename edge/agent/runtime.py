@@ -95,6 +95,14 @@ class AgentParts:
     start_check: SelfTest | None = None  # None: of an agent that has no sensors of its own
 
 
+def _logged(messages: tuple[Message, ...]) -> tuple[Message, ...]:
+    """Log the faults among the messages, for a person at the unit; return the messages."""
+    for message in messages:
+        if isinstance(message, UnitEvent) and message.kind is EventKind.SENSOR_FAULT:
+            logger.info("%s: %s", message.kind.name, message.detail)
+    return messages
+
+
 class Agent:
     """Agent of one unit; ``run`` it once."""
 
@@ -123,7 +131,7 @@ class Agent:
         end_ns = None if for_s is None else self._started_ns + round(for_s * NS_PER_S)
         reason = FAILED
         try:
-            self._put_own(parts.pipeline.start())
+            self._put_own(_logged(parts.pipeline.start()))
             parts.reader.start()
             parts.wearer.start()
             if parts.start_check is not None:
@@ -193,7 +201,7 @@ class Agent:
         if self._failure is not None:
             return
         try:
-            parts.outbox.put(parts.pipeline.step(batch, timeline))
+            parts.outbox.put(_logged(parts.pipeline.step(batch, timeline)))
         except Exception as error:
             if self._is_over(_EARLY_NS):
                 raise

@@ -36,6 +36,9 @@ __all__ = [
 ]
 
 MOST_LAG_S = 0.4  # by which samples of one sensor of a person may come behind those of another
+# Legs of adults in shoes: 0.53 of the height is usual (Drillis and Contini 1966).
+_LEG_M = (0.6, 1.3)
+_LEG_OF_HEIGHT = (0.43, 0.63)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,6 +124,17 @@ class BodyDimensions:
 
     height_m: float | None = None
     leg_length_m: float | None = None  # hip joint to sole, in shoes
+
+    @property
+    def is_leg_implausible(self) -> bool:
+        """True for a leg length that no adult has, or none of that height."""
+        if self.leg_length_m is None:
+            return False
+        if not _LEG_M[0] <= self.leg_length_m <= _LEG_M[1]:
+            return True
+        if self.height_m is None:
+            return False
+        return not _LEG_OF_HEIGHT[0] <= self.leg_length_m / self.height_m <= _LEG_OF_HEIGHT[1]
 
 
 class MultiSensorTracker(Protocol):

@@ -92,6 +92,8 @@ def test_unit_continues_with_one_of_two_sensors(
         ("lower_back", "lower_back"),
     ]
     faults = details(kept_messages, EventKind.SENSOR_FAULT)
+    for fault in faults:
+        assert f"SENSOR_FAULT: {fault}" in agent.output(), "a person at the unit reads it, too"
     assert "tracker eskf tracks by foot; lower_back is recorded only" in faults
     assert "foot: its source has no more" in faults
     tracked = [one for one in kept_messages if isinstance(one, Position)]

@@ -37,7 +37,7 @@ class AutomaticTracker:
         """``sensors``: by their names; at least one without a place."""
         self._sensors = sensors
         self._dimensions = dimensions
-        self._assumed = select_automatically(with_places(sensors, {}))
+        self._assumed = select_automatically(with_places(sensors, {}), dimensions)
         self._tracker = self._assumed.make(with_places(sensors, {}), dimensions)
         self._recognisers = {
             name: MountRecogniser() for name, sensor in sensors.items() if not sensor.place
@@ -125,7 +125,7 @@ class AutomaticTracker:
         undecided = [name for name, one in self._recognisers.items() if one.place is None]
         there = {name: one for name, one in self._sensors.items() if name not in undecided}
         placed = with_places(there or self._sensors, recognised)
-        selection = select_automatically(placed)
+        selection = select_automatically(placed, self._dimensions)
         held, self._held = join_rows(self._held), []
         if _is_same(selection, self._assumed):
             rows = held

@@ -14,6 +14,7 @@ class Choice:
     tracker: str  # its name
     foot_sensor: str | None = None  # name of the sensor that it needs on a foot; None: of none
     recognised: Mapping[str, str] = field(default_factory=dict)  # places, by sensor, by motion
+    notes: tuple[str, ...] = ()  # what does not fit, for a person
 
 
 @runtime_checkable

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -52,7 +52,7 @@ class TrackerSelection:
 
     def choice(self, recognised: Mapping[str, str]) -> Choice:
         """Return what is to be known of it; ``recognised``: places that motion has shown."""
-        return Choice(self.tracker, self.foot_sensor, dict(recognised))
+        return Choice(self.tracker, self.foot_sensor, dict(recognised), self.notes)
 
     @property
     def worn_on(self) -> str:
@@ -69,14 +69,14 @@ class TrackerSelection:
         return self.sensors[0]
 
 
-def select_automatically(sensors: Sensors) -> TrackerSelection:
+def select_automatically(sensors: Sensors, dimensions: BodyDimensions) -> TrackerSelection:
     """Return the tracker that makes the most of sensors at known places."""
     for count in range(len(sensors), 1, -1):
         for names in combinations(sensors, count):
             places = [sensors[name].place for name in names]
             for entry in MULTI_SENSOR_TRACKERS:
                 if accepts_placement(entry, places):
-                    return TrackerSelection(entry.name, names, _unused(entry.name, sensors, names))
+                    return _select_several(entry, sensors, names, dimensions)
     on_foot = [name for name in sensors if is_worn_on(sensors[name].place, (FOOT,))]
     tracker = _ON_FOOT if on_foot else _ELSEWHERE
     name = next(iter(on_foot or sensors))
@@ -90,7 +90,7 @@ def select_named(tracker: str, sensors: Sensors, dimensions: BodyDimensions) -> 
     Raises ConfigError for a name that is none.
     """
     if tracker in (AUTO, BY_PLACE):
-        return select_automatically(with_places(sensors, {}))
+        return select_automatically(with_places(sensors, {}), dimensions)
     if tracker in _names_of_one():
         return _select_one(find_tracker(tracker), sensors)
     entry = next((one for one in MULTI_SENSOR_TRACKERS if one.name == tracker), None)
@@ -100,11 +100,8 @@ def select_named(tracker: str, sensors: Sensors, dimensions: BodyDimensions) -> 
         raise ConfigError(f"There is no tracker '{tracker}'. Known trackers: {', '.join(known)}.")
     for names in combinations(sensors, min(len(entry.places), len(sensors))):
         if accepts_placement(entry, [sensors[name].place for name in names]):
-            notes = _unused(tracker, sensors, names)
-            if _needs_leg_length(entry) and dimensions == BodyDimensions():
-                notes = (*notes, _usual_leg(tracker))
-            return TrackerSelection(tracker, names, notes)
-    instead = select_automatically(sensors)
+            return _select_several(entry, sensors, names, dimensions)
+    instead = select_automatically(sensors, dimensions)
     needed = " and ".join(" or ".join(choices) for choices in entry.places)
     has = ", ".join(sensor.place or "an unknown place" for sensor in sensors.values())
     note = coded(
@@ -125,6 +122,18 @@ def with_places(sensors: Sensors, places: Mapping[str, str]) -> dict[str, Sensor
         name: sensor if sensor.place else replace(sensor, place=places.get(name, FOOT))
         for name, sensor in sensors.items()
     }
+
+
+def _select_several(
+    entry: MultiSensorTrackerEntry,
+    sensors: Sensors,
+    names: tuple[str, ...],
+    dimensions: BodyDimensions,
+) -> TrackerSelection:
+    notes = _unused(entry.name, sensors, names)
+    if _needs_leg_length(entry):
+        notes = (*notes, *_leg_notes(entry.name, dimensions))
+    return TrackerSelection(entry.name, names, notes)
 
 
 def _select_one(entry: TrackerEntry, sensors: Sensors) -> TrackerSelection:
@@ -181,13 +190,23 @@ def _unused(tracker: str, sensors: Sensors, used: tuple[str, ...]) -> tuple[str,
     )
 
 
-def _usual_leg(tracker: str) -> CodedText:
-    return coded(
-        "tracker-usual-leg",
-        "tracker {tracker} takes a usual leg length, as none is set: distances are off by as much "
-        "as that is; give wearer.leg_length_m or wearer.height_m",
-        tracker=tracker,
-    )
+def _leg_notes(tracker: str, dimensions: BodyDimensions) -> Iterator[CodedText]:
+    if dimensions.leg_length_m is not None and dimensions.is_leg_implausible:
+        yield coded(
+            "tracker-leg-implausible",
+            "the leg length of {leg_m:.2f} m fits no person, or not the height that is set: "
+            "tracker {tracker} takes one by the height, else a usual one; correct "
+            "wearer.leg_length_m (hip joint to sole, in metres) or wearer.height_m",
+            tracker=tracker,
+            leg_m=dimensions.leg_length_m,
+        )
+    if dimensions == BodyDimensions():
+        yield coded(
+            "tracker-usual-leg",
+            "tracker {tracker} takes a usual leg length, as none is set: distances are off by as "
+            "much as that is; give wearer.leg_length_m or wearer.height_m",
+            tracker=tracker,
+        )
 
 
 def _needs_leg_length(entry: MultiSensorTrackerEntry) -> bool:

@@ -106,8 +106,11 @@ class TorsoShankConfig(NamedTuple):
 
 
 def leg_length_m(dimensions: BodyDimensions, config: TorsoShankConfig) -> tuple[float, float]:
-    """Return the length of a leg and its stated deviation as a share, by the best that is known."""
-    if dimensions.leg_length_m is not None:
+    """Return the length of a leg and its stated deviation as a share, by the best that is known.
+
+    A length that nobody has is not used.
+    """
+    if dimensions.leg_length_m is not None and not dimensions.is_leg_implausible:
         return dimensions.leg_length_m, config.known_leg_std
     if dimensions.height_m is not None:
         return config.leg_of_height * dimensions.height_m, config.height_leg_std

@@ -11,6 +11,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.clocks.timeline import Timeline
 from edge.samples import SensorBatch, SensorDescription
+from edge.tracker.choice.interface import Choice
 from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import Quality, Reason
 from shared.clock import NS_PER_S, ManualClock
@@ -26,7 +27,7 @@ from shared.messages import (
     UnitEvent,
 )
 from tests.rig.body_postures import PostureStay, posed_body
-from tests.rig.straight_tracker import RATE_HZ, StraightAhead, of, pipeline, steps, walk
+from tests.rig.straight_tracker import RATE_HZ, SENSOR, StraightAhead, of, pipeline, steps, walk
 
 
 @pytest.mark.slow
@@ -89,6 +90,21 @@ def test_rows_that_are_no_numbers_are_counted_and_not_sent():
     messages = steps(pipeline(StraightAhead(spoil=True)), walk(300), [])
     assert not of(messages, Position)
     assert of(messages, Status)[-1].tracker_rows_dropped == 300
+
+
+class ChoosesItself(OneSensorTracker):
+    """Tracker that has chosen itself."""
+
+    choice = Choice("body", notes=("the compass is missing",))
+
+
+def test_what_does_not_fit_a_tracker_that_chooses_itself_is_reported_once():
+    identity = UnitIdentity("1.0", "test", "auto", (FittedSensor(SENSOR),))
+    header_factory = HeaderFactory("u1", 7, ManualClock())
+    pipe = TrackerPipeline(identity, ChoosesItself(StraightAhead()), header_factory, 5.0)
+    messages = steps(pipe, walk(300), [100, 100])
+    faults = [one for one in of(messages, UnitEvent) if one.kind is EventKind.SENSOR_FAULT]
+    assert [one.detail for one in faults] == ["the compass is missing"]
 
 
 def test_position_rate_can_be_changed_during_the_run():

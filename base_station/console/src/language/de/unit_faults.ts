@@ -169,6 +169,8 @@ export const unit_fault: Part<"unit_fault"> = {
   "thermocouple-short": "Kurzschluss: Über- oder Unterspannung am Eingang des Thermoelements",
   "tracker-failed":
     "das Tracking ist beim Start ausgefallen ({error}): Der Taster funktioniert, und das Programm startet eine halbe Minute später neu",
+  "tracker-leg-implausible":
+    "die Beinlänge von {leg_m} passt zu niemandem oder nicht zur eingestellten Größe: Tracker {tracker} nimmt eines nach der Größe, sonst ein übliches; wearer.leg_length_m (Hüftgelenk bis Sohle, in Metern) oder wearer.height_m berichtigen",
   "tracker-made-for":
     "Tracker {tracker} ist für {places} gemacht, und der Sensor sitzt an {place}: tracker auf {auto} setzen",
   "tracker-needs":

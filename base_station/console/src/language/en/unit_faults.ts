@@ -162,6 +162,8 @@ export const unit_fault = {
   "thermocouple-short": "short circuit: over- or undervoltage at the thermocouple’s input",
   "tracker-failed":
     "the tracker has failed at its start ({error}): the button works, and the agent is started again half a minute later",
+  "tracker-leg-implausible":
+    "the leg length of {leg_m} fits no person, or not the height that is set: tracker {tracker} takes one by the height, else a usual one; correct wearer.leg_length_m (hip joint to sole, in metres) or wearer.height_m",
   "tracker-made-for":
     "tracker {tracker} is made for {places}, and the sensor is worn on {place}: set tracker to {auto}",
   "tracker-needs":

@@ -171,6 +171,8 @@ export const unit_fault: Part<"unit_fault"> = {
   "thermocouple-short": "court-circuit\u00a0: surtension ou sous-tension à l’entrée du thermocouple",
   "tracker-failed":
     "le suivi a échoué à son démarrage ({error})\u00a0: le bouton fonctionne, et l’agent est redémarré une demi-minute plus tard",
+  "tracker-leg-implausible":
+    "la longueur de jambe de {leg_m} ne convient à personne, ou pas à la taille réglée\u00a0: le tracker {tracker} en prend une d’après la taille, sinon une usuelle\u00a0; corriger wearer.leg_length_m (de la hanche à la semelle, en mètres) ou wearer.height_m",
   "tracker-made-for":
     "le tracker {tracker} est fait pour {places}, et le capteur est porté sur {place}\u00a0: régler tracker sur {auto}",
   "tracker-needs":

@@ -46,7 +46,7 @@ def one_tracker_of_two(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_places_choose_the_tracker(
     places: list[str], tracker: str, sensors: tuple[str, ...]
 ) -> None:
-    selected = select_automatically(worn(*places))
+    selected = select_automatically(worn(*places), BodyDimensions(height_m=1.8))
     assert (selected.tracker, selected.sensors) == (tracker, sensors)
     assert bool(selected.notes) == (len(sensors) < len(places)), "nothing is left out in silence"
 
@@ -82,6 +82,31 @@ def test_missing_leg_length_is_reported() -> None:
     (note,) = select_named("pair", worn("chest", "shank"), BodyDimensions()).notes
     assert "usual leg length" in note
     assert select_named("pair", worn("chest", "shank"), BodyDimensions(height_m=1.8)).notes == ()
+
+
+def test_missing_leg_length_is_reported_where_the_places_choose_the_tracker() -> None:
+    (note,) = select_named("by-place", worn("chest", "shank"), BodyDimensions()).notes
+    assert "usual leg length" in note
+
+
+@pytest.mark.parametrize(
+    "dimensions",
+    [
+        BodyDimensions(leg_length_m=2.3),
+        BodyDimensions(leg_length_m=95.0),  # centimetres
+        BodyDimensions(height_m=1.95, leg_length_m=0.65),
+        BodyDimensions(height_m=1.55, leg_length_m=1.1),
+    ],
+)
+def test_a_leg_length_that_no_person_has_is_reported(dimensions: BodyDimensions) -> None:
+    (note,) = select_named("pair", worn("chest", "shank"), dimensions).notes
+    assert f"the leg length of {dimensions.leg_length_m:.2f} m fits no person" in note
+
+
+@pytest.mark.parametrize("leg_m", [0.72, 0.87, 1.1])
+def test_leg_lengths_of_people_are_not_reported(leg_m: float) -> None:
+    dimensions = BodyDimensions(height_m=leg_m / 0.53, leg_length_m=leg_m)
+    assert select_named("pair", worn("chest", "shank"), dimensions).notes == ()
 
 
 def test_an_unknown_name_is_refused_with_those_known() -> None:

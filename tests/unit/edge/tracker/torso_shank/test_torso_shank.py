@@ -69,6 +69,14 @@ def test_leg_length_is_estimated_from_the_height_with_more_uncertainty():
     assert measured_std < of_height_std < usual_std
 
 
+def test_leg_length_that_no_person_has_is_not_used():
+    config = TorsoShankConfig()
+    usual = leg_length_m(BodyDimensions(), config)
+    assert leg_length_m(BodyDimensions(leg_length_m=95.0), config) == usual
+    of_height = leg_length_m(BodyDimensions(height_m=1.8), config)
+    assert leg_length_m(BodyDimensions(height_m=1.8, leg_length_m=0.65), config) == of_height
+
+
 def test_a_stated_region_is_wider_without_a_leg_length():
     known, unknown = tracked(corner()), tracked(corner(), BodyDimensions())
     assert np.trace(unknown.position_cov_m2[-1, :2, :2]) > 2.0 * np.trace(
