@@ -57,8 +57,10 @@ class Bench:
         server = JournalServer("FF-01", self.journal)
         self.questions: list[str] = []  # for ranges
         self.acknowledged: list[str] = []
+        self.alert_questions = 0
 
         def replies(key: str, parameters: str, payload: bytes):
+            self.alert_questions += key.endswith("/urgent")
             if key.endswith("/range"):
                 self.questions.append(parameters)
             if key.endswith("/acknowledge"):
@@ -102,7 +104,9 @@ def bench(tmp_path):
 
 def test_missing_messages_come_newest_gap_first_and_once(tmp_path):
     bench = Bench(tmp_path, range(1, 21))
-    for _ in range(4):
+    bench.report(Run(1, 2), Run(6, 17))
+    until(lambda: bench.alert_questions, "the index was taken: numbers up to 20 are known of")
+    for _ in range(3):
         bench.report(Run(1, 2), Run(6, 17))
     until(lambda: len(bench.delivered) == 6)
     for _ in range(3):
