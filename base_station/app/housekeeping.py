@@ -55,7 +55,7 @@ class Housekeeping:
     def run(self) -> None:
         """One round."""
         parts, resources = self._parts, self._parts.resources
-        self._index.update(resources.recorder.segments())
+        self.list_segments()
         resources.disk.check.check_next_segment(resources.recorder.segments())
         if not resources.config.standby.name:  # else it comes from the other station
             self._lost.search_further()
@@ -71,6 +71,10 @@ class Housekeeping:
             parts.restarts.request(None)
         if parts.ha_mode.leads:
             self._submit_actions()
+
+    def list_segments(self) -> None:
+        """Write the list of segments: only by it is one that goes missing known by its name."""
+        self._index.update(self._parts.resources.recorder.segments())
 
     def _submit_actions(self) -> None:
         """Submit the station's own changes of the live state."""

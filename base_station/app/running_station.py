@@ -124,6 +124,7 @@ class RunningStation:
         self._ha_mode.start(self._gate, self._after_engine)
         housekeeping = Housekeeping(self._parts, self._services)
         asyncio.run(serve_until_stopped(self._server, self._on_ready, housekeeping.run))
+        housekeeping.list_segments()  # those since its last round may be lost until the next start
         return self._restarts.requested
 
     # ---- construction of the parts

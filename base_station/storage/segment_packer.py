@@ -106,7 +106,8 @@ class SegmentPacker:
             )
         with self._process:
             _, error_text = self._process.communicate()
-        code, self._process = self._process.returncode, None
+        with self._lock:  # else the end of the block might find none to stop
+            code, self._process = self._process.returncode, None
         if code and error_text and not self._worker.stopping.is_set():
             _log.warning("%s", error_text.strip())
         return code == 0

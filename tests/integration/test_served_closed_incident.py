@@ -7,7 +7,7 @@ import re
 import shutil
 import time
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -125,13 +125,12 @@ def is_shown(message: dict[str, Any]) -> bool:
 
 def replaying(station: int) -> list[psutil.Process]:
     """Processes that look at the past: copies of one that has loaded the program."""
-    return [
-        copy
-        for child in psutil.Process(station).children()
-        if "base_station.app.worker_process" in child.cmdline()
-        for copy in child.children()
-        if copy.status() != psutil.STATUS_ZOMBIE
-    ]
+    found = []
+    for child in psutil.Process(station).children():
+        with suppress(psutil.NoSuchProcess):  # it has just ended, as one that packs a segment does
+            if "base_station.app.worker_process" in child.cmdline():
+                found += [one for one in child.children() if one.status() != psutil.STATUS_ZOMBIE]
+    return found
 
 
 def _wait_for(
