@@ -68,6 +68,8 @@ def main() -> None:
     gc_tuning.configure()
     with gc_tuning.paused():
         from base_station.app import replay_worker  # noqa: F401, PLC0415  # for all copies
+        from base_station.storage.checkpoints import program_checksum  # noqa: PLC0415  # likewise
+    program_checksum()
     with socket.socket(fileno=int(sys.argv[1])) as control:
         serve(control)
 

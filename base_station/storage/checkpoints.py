@@ -55,7 +55,7 @@ class Checkpoints:
         self._folder = folder
         self._report = report
         self._changing = Lock()
-        self._program = _program()
+        self._program = program_checksum()
         self._useless: set[Path] = set()  # torn, or of another version of the program
         self.is_refused = False  # the disk is full: save only what is needed
         make_folder(folder)
@@ -126,8 +126,10 @@ class Checkpoints:
 
 
 @cache  # of what this process has loaded, whatever an update writes meanwhile
-def _program() -> int:
-    """Checksum over the text of everything that a state may come from."""
+def program_checksum() -> int:
+    """Checksum over the text of everything that a state may come from.  What copies itself calls
+    this when it has loaded the program: copies of later times are of the same text.
+    """
     return _checksum_of(*(Path(one.__path__[0]) for one in (base_station, shared)))
 
 

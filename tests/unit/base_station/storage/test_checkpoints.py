@@ -89,7 +89,7 @@ def test_checkpoints_of_another_program_are_left(
     """Parts of the state may have another form; the log has everything that matters."""
     Checkpoints(tmp_path).save(100, 3, make_pipeline().checkpoint())
     assert Checkpoints(tmp_path).latest() is not None
-    monkeypatch.setattr("base_station.storage.checkpoints._program", lambda: 7)
+    monkeypatch.setattr("base_station.storage.checkpoints.program_checksum", lambda: 7)
     assert Checkpoints(tmp_path).latest() is None
 
 
