@@ -224,6 +224,45 @@ def check(
         raise typer.Exit(1)
 
 
+@app.command("learn-steps", rich_help_panel=_OPERATION)
+def learn_steps(
+    length_m: Annotated[
+        float,
+        typer.Option(help="Length of the walk in metres, measured with a tape.", callback=finite),
+    ],
+    person: Annotated[
+        str | None, typer.Option(help="The wearer, as wearer.person in the unit's settings.")
+    ] = None,
+    config: Config = None,
+    unit: Unit = None,
+    source: SamplesFrom = None,
+    worn_on: WornOn = None,
+    enrolment: Enrolment = None,
+    data: Data = None,
+    calibration: Calibrated = None,
+    for_s: ForSeconds = None,
+) -> None:
+    """Learn the length of a person's steps by one walk of known length; Ctrl-C ends the walk."""
+    # Only this command needs what these import, and they take their time.
+    from edge.app import learn_steps as steps  # noqa: PLC0415
+    from edge.config import EdgeConfig  # noqa: PLC0415
+    from shared.config import load_config  # noqa: PLC0415
+    from shared.end_signals import end_requested  # noqa: PLC0415
+    from shared.log import set_up_logging  # noqa: PLC0415
+
+    flags = {
+        "unit": unit,
+        "enrolment": enrolment,
+        "source": source,
+        "worn_on": worn_on,
+        "data": data,
+        "calibration": calibration,
+    }
+    settings = steps.with_person(load_config(config, EdgeConfig, flags), person)
+    set_up_logging(settings.log_level, settings.log_format)
+    steps.learn_steps(settings, length_m, for_s, end_requested())
+
+
 @app.command(rich_help_panel=_OPERATION)
 def enrol(
     picture: Annotated[

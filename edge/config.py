@@ -61,8 +61,10 @@ def _check_place(worn_on: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class WearerConfig:
-    """Measures of the wearer, for the trackers that use them; None: not measured."""
+    """Wearer, and measures for the trackers that use them; None: not measured."""
 
+    # By which the unit keeps what it learns of the wearer's steps; empty: nothing is kept.
+    person: Annotated[str, Meta(max_length=128)] = ""
     height_m: Annotated[float, Meta(ge=1.0, le=2.5)] | None = None
     # Hip joint to sole, in shoes.  One that nobody has stops no unit: it is reported and not used.
     leg_length_m: Annotated[float, Meta(ge=0.0, le=1000.0)] | None = None

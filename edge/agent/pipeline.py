@@ -6,7 +6,7 @@ give the same messages.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import msgspec
@@ -20,6 +20,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.mayday_button import MaydayButton
 from edge.agent.position_publisher import PositionPublisher
 from edge.agent.sighting_limit import SightingLimit
+from edge.agent.step_scale_by_fixes import StepScaleByFixes
 from edge.agent.temperatures import AmbientTemperature, CurrentReadings
 from edge.agent.unit_sensors import UnitSensors
 from edge.clocks.timeline import Timeline
@@ -38,7 +39,7 @@ from edge.samples import (
     SightingSample,
 )
 from edge.tracker.choice.interface import Choice, ChoosesTracker
-from edge.tracker.interface import MultiSensorTracker, TrackBatch
+from edge.tracker.interface import LearnsSteps, MultiSensorTracker, StepScale, TrackBatch
 from edge.tracker.track_rows import empty_rows
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.header_factory import HeaderFactory
@@ -86,12 +87,14 @@ class TrackerPipeline:
         foot_sensor: str | None = None,
         worn_on: str = "",
         notes: tuple[str, ...] = (),
+        step_scales: Mapping[str, StepScale] | None = None,
     ) -> None:
         """``mayday``: one was latched when the unit last ended suddenly.  ``raw_uplink``: of a unit
         that sends its samples and is tracked elsewhere.  ``foot_sensor``: name of the sensor that
         the tracker needs on a foot.  ``worn_on``: place on the body that the tracker assumes for a
         sensor without one; its inclination shows the posture.  ``notes``: messages on the tracker
-        and its sensors that are sent at the start.
+        and its sensors that are sent at the start.  ``step_scales``: those with which the tracker
+        starts, by place.
         """
         self._identity = identity
         self._sensors = UnitSensors(identity.sensors)
@@ -105,6 +108,8 @@ class TrackerPipeline:
         self._check_mounting(foot_sensor)
         self._choice: Choice | None = None
         self._notes = notes
+        self._step_scales = step_scales or {}
+        self._steps_by_fixes = StepScaleByFixes()
         self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
         self._raw_uplink = raw_uplink
@@ -145,6 +150,18 @@ class TrackerPipeline:
     def is_worn(self) -> bool:
         """True once it has moved for a while: a unit that lies on a shelf is not worn."""
         return self._sensors.monitor.moving_s >= _WORN_S
+
+    @property
+    def walked_step_scales(self) -> Mapping[str, StepScale]:
+        """Scales of the wearer's steps that this walk has shown, by place of the sensor."""
+        if not isinstance(self._tracker, LearnsSteps):
+            return {}
+        place, by_fixes = self._tracker.scaled_place, self._steps_by_fixes.scale
+        if place is None or by_fixes is None:
+            return self._tracker.walked_step_scales
+        start = self._step_scales.get(place)
+        factor = 1.0 if start is None else start.factor
+        return {place: StepScale(factor * by_fixes.factor, factor * by_fixes.std)}
 
     @property
     def is_on_foot(self) -> bool:
@@ -225,6 +242,8 @@ class TrackerPipeline:
 
     def _publish(self, track: TrackBatch, timeline: Timeline) -> list[Position]:
         self._positions.set_path_noise(self._tracker.path_noise)
+        if isinstance(self._tracker, LearnsSteps) and self._tracker.scaled_place is not None:
+            self._steps_by_fixes.push(track, self._tracker.path_noise)
         return self._positions.push(track, timeline)
 
     def _follow_choice(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
@@ -265,6 +284,7 @@ class TrackerPipeline:
                 self._electronics.push(sample.sensor, sample.t_ns, sample.temperature_degc)
             case GpsSample():
                 self._has_gps = True
+                self._steps_by_fixes.take_fix(sample)
                 if self._gps_times.takes(sample.t_ns):
                     return [gps_fix(self._header_factory.header(mono_ns), sample)]
             case SightingSample():

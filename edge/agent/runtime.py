@@ -22,6 +22,7 @@ from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline
 from edge.agent.source_reader import SourceReader, TimedBatch
+from edge.agent.step_scale_keeper import StepScaleKeeper
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
@@ -88,6 +89,7 @@ class AgentParts:
     journal: Journal
     journal_writer: JournalWriter
     mayday_latch: MaydayLatch
+    steps: StepScaleKeeper
     outbox: Outbox
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
@@ -305,6 +307,7 @@ class Agent:
         parts = self._parts
         self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
         parts.manager.working()
+        parts.steps.take(parts.pipeline.walked_step_scales)
         clock, journal = parts.clock.estimate(), parts.journal
         heartbeat = Heartbeat(
             parts.header_factory.header(),
@@ -345,10 +348,12 @@ class Agent:
             last.callback(parts.journal_writer.close)
             last.callback(parts.outbox.close)
             last.callback(parts.mayday_latch.close)
+            last.callback(parts.steps.close)
             last.callback(parts.wearer.close)
             parts.reader.close()
             self._take_presses(parts.reader.last_presses(), Timeline())
             parts.outbox.put(parts.pipeline.finish(self._timeline))
+            parts.steps.take(parts.pipeline.walked_step_scales)
             if ended:
                 self._send_event(
                     EventKind.SOURCE_ENDED, parts.reader.failure or "the source has no more"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import os
 import secrets
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
@@ -22,6 +22,7 @@ from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
 from edge.agent.runtime import Agent, AgentParts
 from edge.agent.source_reader import SourceReader
+from edge.agent.step_scale_keeper import StepScaleKeeper
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.app.fitted_sensors import fitted_sensors
 from edge.app.opened_sources import provided_quantities
@@ -47,6 +48,8 @@ from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, open_journal
 from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
+from edge.storage.step_scales import StepScales
+from edge.tracker.interface import StepScale
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.coded_text import coded
@@ -77,12 +80,22 @@ def compose_agent(
         header_factory = HeaderFactory(unit_id, journal.boot_id, clock, clock.utc_std_s)
         worn = tracked_unit(unit_id) or unit_id
         sensors = fitted_sensors(config, source, worn, folder.calibrations)
-        tracking = tracking_of(config, sensors)
+        steps = StepScaleKeeper(StepScales(folder.step_scales, config.wearer.person))
+        on_error.callback(steps.close)
+        tracking = tracking_of(config, sensors, steps.start_scales)
         description = _described(config, raw, sensors, tracking, clock)
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
         pipeline = _pipeline(
-            config, tracking, sensors, header_factory, journal, latch, outputs, clock
+            config,
+            tracking,
+            sensors,
+            header_factory,
+            journal,
+            latch,
+            outputs,
+            clock,
+            steps.start_scales,
         )
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = _black_box(config, folder, description, clock)
@@ -115,6 +128,7 @@ def compose_agent(
                 journal=journal,
                 journal_writer=journal_writer,
                 mayday_latch=latch,
+                steps=steps,
                 outbox=outbox,
                 link=link,
                 commands=commands,
@@ -249,6 +263,7 @@ def _pipeline(
     latch: MaydayLatch,
     outputs: Outputs,
     clock: StationClock,
+    step_scales: Mapping[str, StepScale],
 ) -> TrackerPipeline:
     return TrackerPipeline(
         UnitIdentity(
@@ -267,6 +282,7 @@ def _pipeline(
         foot_sensor=tracking.foot_sensor,
         worn_on=tracking.worn_on,
         notes=tracking.notes,
+        step_scales=step_scales,
     )
 
 

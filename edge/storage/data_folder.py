@@ -48,6 +48,11 @@ class UnitDataFolder:
         return self.path / "open_commands.json"
 
     @property
+    def step_scales(self) -> Path:
+        """Learnt lengths of the steps of those who have worn it."""
+        return self.path / "step_scales.json"
+
+    @property
     def calibrations(self) -> Path:
         """Calibrations ever used, by their identity: the raw samples are computed with them."""
         return self.path / "calibrations"

@@ -7,8 +7,8 @@ known, an arbitrary but constant heading of "north".
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from typing import Protocol
+from dataclasses import dataclass, field, fields
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +25,13 @@ __all__ = [
     "MOST_LAG_S",
     "RIGHT_FOOT",
     "BodyDimensions",
+    "LearnsSteps",
     "MultiSensorTracker",
     "MultiSensorTrackerEntry",
     "Quality",
     "Reason",
+    "ScaledByPerson",
+    "StepScale",
     "TrackBatch",
     "Tracker",
     "TrackerEntry",
@@ -71,7 +74,7 @@ class TrackBatch:
         return len(self.t_ns)
 
     def part(self, rows: NDArray[np.intp]) -> TrackBatch:
-        return TrackBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return TrackBatch(*(getattr(self, column.name)[rows] for column in fields(self)))
 
 
 class Tracker(Protocol):
@@ -119,11 +122,44 @@ class WornSensor:
 
 
 @dataclass(frozen=True, slots=True)
+class StepScale:
+    """Length of steps by that which a tracker takes them for, and its standard deviation."""
+
+    factor: float
+    std: float
+
+
+@runtime_checkable
+class ScaledByPerson(Protocol):
+    """Tracker by steps whose lengths are known better of a person than of people."""
+
+    def set_step_scale(self, scale: StepScale) -> None:
+        """Start with this scale; before the first samples."""
+        ...
+
+
+@runtime_checkable
+class LearnsSteps(Protocol):
+    """Tracker of a person whose walk shows how long the person's steps are."""
+
+    @property
+    def scaled_place(self) -> str | None:
+        """Place of the sensor whose steps make all of the path; None: there is none such."""
+        ...
+
+    @property
+    def walked_step_scales(self) -> Mapping[str, StepScale]:
+        """Scales that the person's other sensors have shown in this walk, by place."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
 class BodyDimensions:
     """Measures of a person that are known in advance; ``None``: unknown."""
 
     height_m: float | None = None
     leg_length_m: float | None = None  # hip joint to sole, in shoes
+    step_scales: Mapping[str, StepScale] = field(default_factory=dict)  # by place of the sensor
 
     @property
     def is_leg_implausible(self) -> bool:

@@ -42,6 +42,7 @@ LEFT_OUT = {
     "tak",  # the last test
     "wearer.height_m",
     "wearer.leg_length_m",
+    "wearer.person",
 }
 _COMMENTED = re.compile(r"^# (\[[\w.-]+\]|\w+ = .*)$", re.MULTILINE)
 

@@ -47,7 +47,7 @@ from edge.tracker.body.steps import begins_to_rise
 from edge.tracker.body.thigh_swing import recognise_thigh, swing_rate
 from edge.tracker.body.ticks import low_pass, next_tick
 from edge.tracker.body.walking_direction import take_direction
-from edge.tracker.interface import TrackBatch
+from edge.tracker.interface import StepScale, TrackBatch
 from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
 from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.preprocessing.sample_times import regular_time
@@ -82,13 +82,20 @@ class BodyTracker:
             self.config.first_bias_std_radps if bias_std_radps is None else bias_std_radps,
             self.config,
         )
+        self._scale_std = self.config.scale_std
+
+    def set_step_scale(self, scale: StepScale) -> None:
+        """Start with the scale of a person; see ``ScaledByPerson``."""
+        self._scale_std = scale.std
+        self._state["estimate"][0, SCALE] = scale.factor - 1.0
+        self._state["covariance"][0, SCALE, SCALE] = scale.std**2
 
     @property
     def path_noise(self) -> PathNoise:
         """Process noise as of ``path_filter``, whose random walks go by steps and by time."""
         config = self.config
         return PathNoise(
-            scale_std=config.scale_std,
+            scale_std=self._scale_std,
             place_std_m_per_sqrt_m=step_std(self._state[0], config)
             * math.sqrt(config.usual_step_m),
             turn_std_rad_per_sqrt_m=config.heading_walk_rad / math.sqrt(config.usual_speed_mps),

@@ -8,6 +8,7 @@ was right, so nothing of the path is lost, and nothing of it is of a tracker tha
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from edge.tracker.choice.selection import (
     select_automatically,
     with_places,
 )
-from edge.tracker.interface import BodyDimensions, TrackBatch
+from edge.tracker.interface import BodyDimensions, LearnsSteps, StepScale, TrackBatch
 from edge.tracker.track_rows import empty_rows, join_rows
 from shared.clock import NS_PER_S
 from shared.earth_field import EarthField
@@ -57,6 +58,16 @@ class AutomaticTracker:
     def path_noise(self) -> PathNoise | None:
         """Process noise of the rows; see ``Tracker``."""
         return self._tracker.path_noise
+
+    @property
+    def scaled_place(self) -> str | None:
+        """Place of the sensor whose steps make all of the path; see ``LearnsSteps``."""
+        return self._tracker.scaled_place if isinstance(self._tracker, LearnsSteps) else None
+
+    @property
+    def walked_step_scales(self) -> Mapping[str, StepScale]:
+        """Scales that the other sensors have shown; see ``LearnsSteps``."""
+        return self._tracker.walked_step_scales if isinstance(self._tracker, LearnsSteps) else {}
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         """Take samples of one sensor; return the rows that have become final."""

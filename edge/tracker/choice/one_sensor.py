@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from edge.samples import ImuBatch
-from edge.tracker.interface import TrackBatch, Tracker
+from edge.tracker.interface import ScaledByPerson, StepScale, TrackBatch, Tracker
 from edge.tracker.track_rows import empty_rows
 from shared.earth_field import EarthField
 from shared.path_noise import PathNoise
@@ -12,9 +15,17 @@ from shared.path_noise import PathNoise
 class OneSensorTracker:
     """``MultiSensorTracker`` that tracks by one sensor and leaves the others alone."""
 
-    def __init__(self, tracker: Tracker, sensor: str = "") -> None:
+    walked_step_scales: Mapping[str, StepScale] = MappingProxyType({})
+
+    def __init__(self, tracker: Tracker, sensor: str = "", place: str = "") -> None:
         self._tracker = tracker
         self._sensor = sensor
+        self._place = place
+
+    @property
+    def scaled_place(self) -> str | None:
+        """Place of the sensor where its steps make the path; see ``LearnsSteps``."""
+        return self._place if isinstance(self._tracker, ScaledByPerson) else None
 
     @property
     def path_noise(self) -> PathNoise | None:

@@ -14,6 +14,7 @@ from edge.tracker.interface import (
     BodyDimensions,
     MultiSensorTracker,
     MultiSensorTrackerEntry,
+    ScaledByPerson,
     TrackerEntry,
     WornSensor,
 )
@@ -46,7 +47,11 @@ class TrackerSelection:
         """Return a new tracker of this selection."""
         if self.tracker in _names_of_one():
             (name,) = self.sensors
-            return OneSensorTracker(find_tracker(self.tracker).make(sensors[name]), name)
+            tracker = find_tracker(self.tracker).make(sensors[name])
+            scale = dimensions.step_scales.get(sensors[name].place)
+            if scale is not None and isinstance(tracker, ScaledByPerson):
+                tracker.set_step_scale(scale)
+            return OneSensorTracker(tracker, name, sensors[name].place)
         worn = {name: WornSensor(sensors[name], sensors[name].place) for name in self.sensors}
         return make_multi_sensor_tracker(self.tracker, worn, dimensions)
 
@@ -200,7 +205,7 @@ def _leg_notes(tracker: str, dimensions: BodyDimensions) -> Iterator[CodedText]:
             tracker=tracker,
             leg_m=dimensions.leg_length_m,
         )
-    if dimensions == BodyDimensions():
+    if dimensions.leg_length_m is None and dimensions.height_m is None:
         yield coded(
             "tracker-usual-leg",
             "tracker {tracker} takes a usual leg length, as none is set: distances are off by as "

@@ -15,12 +15,14 @@ from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.fused_paths.rows import Columns, fuse
 from edge.tracker.fused_paths.sensor_rows import SensorRows
-from edge.tracker.fused_paths.state import FUSION, FusionConfig
+from edge.tracker.fused_paths.state import ERRORS, FUSION, LEAD, LENGTH, OTHER, FusionConfig
 from edge.tracker.interface import (
     FOOT,
     LEFT_FOOT,
     RIGHT_FOOT,
     BodyDimensions,
+    ScaledByPerson,
+    StepScale,
     TrackBatch,
     Tracker,
     WornSensor,
@@ -30,6 +32,7 @@ from shared.earth_field import EarthField
 from shared.path_noise import PathNoise
 
 FEET = (FOOT, LEFT_FOOT, RIGHT_FOOT)
+_MEASURED_SHARE = 0.8  # of the variance at the start: one that is larger has shown nothing
 TWO_FEET = FusionConfig()
 # The foot's path is by far the better one; the trunk's lengths are learnt from it.
 FOOT_AND_TRUNK = FusionConfig(length_std=(0.003, 0.08), share=(0.99, 0.01))
@@ -39,6 +42,7 @@ class FusedPathsTracker:
     """Two paths of one person, fused; see ``MultiSensorTracker``."""
 
     path_noise: PathNoise | None = None  # of the leading foot, which is the usual one
+    scaled_place: str | None = None  # the foot's path is by no steps
 
     def __init__(
         self,
@@ -48,20 +52,46 @@ class FusedPathsTracker:
         tracker_at: Callable[[str], Callable[[SensorDescription], Tracker]] | None = None,
     ) -> None:
         """``tracker_at`` gives the maker of the tracker for a place."""
-        del dimensions  # the paths have their own lengths
         tracker_at = tracker_at or _tracker_at
-        self._config = config
         # The leading sensor is a foot, and the left one of two.
         names = sorted(
             sensors, key=lambda name: (sensors[name].place not in FEET, sensors[name].place)
         )
-        self._paths = {
-            name: SensorRows(
-                tracker_at(sensors[name].place)(sensors[name].description), config.silence_s
-            )
-            for name in names
+        trackers = {
+            name: tracker_at(sensors[name].place)(sensors[name].description) for name in names
         }
+        self._paths = {
+            name: SensorRows(tracker, config.silence_s) for name, tracker in trackers.items()
+        }
+        self._trunk_place: str | None = None  # of the other path where that one is by steps
+        self._known = StepScale(1.0, config.length_std[OTHER])  # of that path, at the start
+        other = trackers[names[OTHER]]
+        if isinstance(other, ScaledByPerson):
+            self._trunk_place = sensors[names[OTHER]].place
+            known = dimensions.step_scales.get(self._trunk_place)
+            if known is not None:
+                self._known = known
+                other.set_step_scale(known)
+                config = config._replace(length_std=(config.length_std[LEAD], known.std))
+        self._config = config
         self._state = np.zeros(1, FUSION)
+
+    @property
+    def walked_step_scales(self) -> Mapping[str, StepScale]:
+        """Scale of the steps of this walk by place, as the other path alone has shown it."""
+        other = self._state[0]["paths"][OTHER]
+        if self._trunk_place is None or not other["aligned"]:
+            return {}
+        # The posterior of the filter is that of its start and of what was measured.
+        at = ERRORS * OTHER + LENGTH
+        left = float(self._state[0]["covariance"][at, at])
+        start = self._config.length_std[OTHER] ** 2
+        if not 0.0 < left < _MEASURED_SHARE * start:
+            return {}
+        variance = left * start / (start - left)
+        measured = 1.0 + (float(other["scale"]) - 1.0) * (1.0 + variance / start)
+        factor = self._known.factor
+        return {self._trunk_place: StepScale(factor * measured, factor * variance**0.5)}
 
     def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
         """Take samples of one sensor; return the rows that have become final."""

@@ -7,6 +7,7 @@ corrected by what the tracker makes of all others.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import permutations
@@ -18,12 +19,15 @@ from numpy.typing import NDArray
 from rich import box
 from rich.table import Table
 
+from edge.agent.step_learning import learn, scale_by_length
 from edge.app.track import run_tracker
 from edge.samples import Floats
 from edge.sources.recording import RecordedTruth, RecordingSource, read_truth
+from edge.tracker.body.config import BodyConfig
 from edge.tracker.interface import FOOT, TrackBatch
 from edge.tracker.registry import TRACKERS
 from shared.errors import UserError
+from shared.path_noise import PathNoise
 from tests.bench.tracker.scoring import (
     CHI2_95_2DOF,
     horizontal_nees,
@@ -50,6 +54,7 @@ class ReturnWalk:
     """One walk out and back."""
 
     person: int
+    length_m: float  # in truth
     length_ratio: float  # tracked by true
     closure_m: float
     covered: bool  # where it began is in the stated 95 % region of its end
@@ -63,6 +68,7 @@ class Elsewhere:
     backs: int
     length_error: float  # median, the person left out of the fit
     known_length_error: float  # median, scaled by another walk of the same person
+    learnt_length_error: float  # median, learnt from another walk as `muster edge learn-steps` does
     closure_median_m: float
     closure_coverage_95: float
     phones: int
@@ -92,6 +98,7 @@ def measure_tracker_elsewhere(data: Path, name: str) -> Elsewhere:
         backs=len(walks),
         length_error=float(np.median(left_out_errors(walks, fitted=name in _FIT_OF))),
         known_length_error=float(np.median(list(_known_length_errors(walks)))),
+        learnt_length_error=float(np.median(list(_learnt_length_errors(walks)))),
         closure_median_m=float(np.median([walk.closure_m for walk in walks])),
         closure_coverage_95=float(np.mean([walk.covered for walk in walks])),
         phones=len(ways),
@@ -127,6 +134,7 @@ def score_return(folder: Path, rows: TrackBatch) -> ReturnWalk:
     nees = horizontal_nees(place_m[1:], place_m[:1], known_m2)
     return ReturnWalk(
         person=trial.subject,
+        length_m=trial.path_length_m,
         length_ratio=float(distance_m[1] - distance_m[0]) / trial.path_length_m,
         closure_m=float(np.hypot(*(place_m[1] - place_m[0])[:2])),
         covered=bool(nees[0] <= CHI2_95_2DOF),
@@ -148,6 +156,17 @@ def _known_length_errors(walks: Sequence[ReturnWalk]) -> Iterator[float]:
     for known, walk in permutations(walks, 2):
         if known.person == walk.person:
             yield abs(walk.length_ratio / known.length_ratio - 1.0)
+
+
+def _learnt_length_errors(walks: Sequence[ReturnWalk]) -> Iterator[float]:
+    """Each walk, with the steps that each other walk of the same person has shown."""
+    config = BodyConfig()
+    noise = PathNoise(None, config.trunk_step_std * math.sqrt(config.usual_step_m))
+    for known, walk in permutations(walks, 2):
+        if known.person == walk.person:
+            tracked_m = known.length_ratio * known.length_m
+            learnt = learn(None, scale_by_length(known.length_m, tracked_m, noise))
+            yield abs(walk.length_ratio * learnt.factor - 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,6 +210,7 @@ def elsewhere_table(results: Sequence[Elsewhere]) -> Table:
         "lower backs",
         "length off, %",
         "after one known, %",
+        "... learnt, %",
         "closure, m",
         "in 95 %",
         "telephones",
@@ -206,6 +226,7 @@ def elsewhere_table(results: Sequence[Elsewhere]) -> Table:
             str(one.backs),
             f"{100.0 * one.length_error:.1f}",
             f"{100.0 * one.known_length_error:.1f}",
+            f"{100.0 * one.learnt_length_error:.1f}",
             f"{one.closure_median_m:.2f}",
             f"{100.0 * one.closure_coverage_95:.0f}",
             str(one.phones),

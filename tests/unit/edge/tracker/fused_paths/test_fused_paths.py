@@ -7,12 +7,13 @@ import pytest
 
 from edge.samples import ImuBatch
 from edge.tracker.fused_paths.sensor_rows import SensorRows
-from edge.tracker.fused_paths.tracker import TWO_FEET, FusedPathsTracker
+from edge.tracker.fused_paths.tracker import FOOT_AND_TRUNK, TWO_FEET, FusedPathsTracker
 from edge.tracker.interface import (
     LEFT_FOOT,
     RIGHT_FOOT,
     BodyDimensions,
     Quality,
+    StepScale,
     TrackBatch,
     WornSensor,
 )
@@ -144,3 +145,56 @@ def test_rows_held_back_over_a_silence_are_left_out():
     rows.push(FEET.imu.part(slice(400, 500)))
     taken = rows.take(2**62)
     assert np.array_equal(taken.t_ns, FEET.imu.t_ns[:100])
+
+
+class ScriptedTrunk(Scripted):
+    """Trunk whose steps are taken for too short, by the scale of a person where one is known."""
+
+    def __init__(self, scale):
+        super().__init__(scale=scale)
+        self.start = StepScale(1.0, 0.08)
+
+    def set_step_scale(self, scale):
+        self.start = scale
+        self._scale *= scale.factor
+        self._way_m *= scale.factor
+
+
+def beside_a_foot(trunk, known=None):
+    scripted = {LEFT_FOOT: Scripted(), "chest": trunk}
+    tracker = FusedPathsTracker(
+        {place: WornSensor(FEET.description, place) for place in scripted},
+        BodyDimensions(step_scales={} if known is None else {"chest": known}),
+        FOOT_AND_TRUNK,
+        lambda place: lambda _: scripted[place],
+    )
+    track_person(tracker, {LEFT_FOOT: FEET.imu, "chest": FEET.imu})
+    return tracker
+
+
+def test_a_foot_shows_how_long_the_steps_of_the_trunk_are():
+    tracker = beside_a_foot(ScriptedTrunk(1.0 / 1.15))
+    assert tracker.scaled_place is None
+    scale = tracker.walked_step_scales["chest"]
+    assert scale.factor == pytest.approx(1.15, abs=0.03)
+    assert abs(scale.factor - 1.15) < 3.0 * scale.std
+
+
+def test_a_trunk_starts_with_the_steps_of_its_wearer_and_shows_the_same():
+    trunk = ScriptedTrunk(1.0 / 1.15)
+    tracker = beside_a_foot(trunk, StepScale(1.1, 0.05))
+    assert trunk.start == StepScale(1.1, 0.05)
+    scale = tracker.walked_step_scales["chest"]
+    assert scale.factor == pytest.approx(1.15, abs=0.03), "by this walk, without what was known"
+
+
+def test_two_feet_show_nothing_of_steps():
+    scripted = {LEFT_FOOT: Scripted(), RIGHT_FOOT: Scripted()}
+    tracker = FusedPathsTracker(
+        {place: WornSensor(FEET.description, place) for place in scripted},
+        BodyDimensions(),
+        TWO_FEET,
+        lambda place: lambda _: scripted[place],
+    )
+    track_person(tracker, {LEFT_FOOT: FEET.imu, RIGHT_FOOT: FEET.imu})
+    assert tracker.walked_step_scales == {}
