@@ -144,7 +144,7 @@ describe("somebody on another floor", () => {
 describe("where names stand on the plan", () => {
   const screen: Pixel = [500, 400];
   const named = (mark: Pixel, change: Partial<Named> = {}): Named => {
-    return { mark, widthPx: 120, strong: false, before: null, ...change };
+    return { mark, widthPx: 120, strong: false, first: false, before: null, ...change };
   };
   const placed = (people: Named[], covered: Box[] = [], standing: Box[] = []) =>
     placeNames(people, { size: screen, covered, standing });
@@ -226,6 +226,19 @@ describe("where names stand on the plan", () => {
     });
   });
 
+  it("of many in danger lies over no other name, but of who is down", () => {
+    const many = Array.from({ length: 30 }, (_, i) => named([240 + i, 200 + (i % 3)], { strong: true }));
+    const down = named([250, 201], { strong: true, first: true });
+    const places = placed([...many, down]);
+    const all = [...many, down];
+    const boxes = all.flatMap((one, i) => (places[i] ? [boxOf(one, places[i])] : []));
+    expect(places[30]).not.toBeNull();
+    expect(boxes.length).toBeLessThan(all.length);
+    boxes.forEach((box, i) => {
+      expect(boxes.slice(i + 1).filter((other) => meet(box, other))).toEqual([]);
+    });
+  });
+
   it("stays on its side while it can", () => {
     expect(placed([named([250, 200], { before: "above" })])[0]?.side).toBe("above");
     expect(placed([named([250, 3], { before: "above" })])[0]?.side).toBe("below");
@@ -238,6 +251,7 @@ describe("the name of somebody on the plan", () => {
     initials: "A",
     urgency: "normal",
     chosen: false,
+    down: false,
     old: false,
     ageMs: 72_000,
     floor: "",

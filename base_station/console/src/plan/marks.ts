@@ -11,6 +11,7 @@ export interface Mark {
   initials: string;
   urgency: Urgency;
   chosen: boolean;
+  down: boolean;
   old: boolean;
   ageMs: number;
   floor: string; // where it is not simply the one shown

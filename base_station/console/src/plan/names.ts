@@ -20,6 +20,7 @@ export interface Named {
   mark: Pixel;
   widthPx: number; // of the name
   strong: boolean; // in danger or chosen: named whatever that hides
+  first: boolean; // of those: down or chosen, named before the others
   before: Side | null; // where the name stood last: it stays there while it can
 }
 
@@ -35,6 +36,9 @@ const MARK_PX = 14;
 const APART_PX = 25;
 const HALF_LINE_PX = 9;
 const EDGE_PX = 4;
+/** With more people in danger, as after an evacuation whose PARs are all overdue, names over names
+ * could not be read: only of the first ones. */
+const MOST_STRONG = 12;
 
 /** One for each person, null without a name: there is no room, or the person is outside the screen. */
 export function placeNames(
@@ -45,9 +49,11 @@ export function placeNames(
   const marks = people.map(({ mark }) => around(mark, MARK_PX, MARK_PX));
   const strongMarks = marks.filter((_, i) => people[i]?.strong);
   const names: Box[] = [];
-  for (const strong of [true, false]) {
+  const isFlood = strongMarks.length > MOST_STRONG;
+  for (const turn of [isFirst, isStrong, isWeak]) {
     people.forEach((one, i) => {
-      if (one.strong !== strong || !isOn(one.mark, screen)) return;
+      if (!turn(one) || !isOn(one.mark, screen)) return;
+      const { first, strong } = one;
       const all = sidesFor(one.before).map((side) => placeAt(side, one, screen));
       const clearOf = (...taken: (readonly Box[])[]) =>
         all.find(({ offset }) => isClear(boxOf(one, offset), taken, screen)) ?? null;
@@ -55,8 +61,7 @@ export function placeNames(
         clearOf(strongMarks, names, covered, standing) ??
         clearOf(strongMarks, names, covered) ??
         clearOf(names, covered) ??
-        clearOf() ??
-        placeAt("below", one, screen);
+        (isFlood && !first ? null : (clearOf() ?? placeAt("below", one, screen)));
       const found = clearOf(marks, names, covered, standing) ?? (strong ? inNeed() : null);
       if (found === null) return;
       places[i] = found;
@@ -65,6 +70,10 @@ export function placeNames(
   }
   return places;
 }
+
+const isFirst = ({ first }: Named) => first;
+const isStrong = ({ strong, first }: Named) => strong && !first;
+const isWeak = ({ strong, first }: Named) => !strong && !first;
 
 function sidesFor(before: Side | null): readonly Side[] {
   return before === null ? SIDES : [before, ...SIDES.filter((side) => side !== before)];

@@ -67,6 +67,7 @@ export class PeopleLayer extends Layer {
       mark: scene.screen.pixelOf(centre) ?? BESIDE,
       widthPx: this.widths.of(labelFont(looks), labelOf(looks)),
       strong: isStrong(looks),
+      first: looks.chosen || looks.down,
       before: this.sides.get(unitId) ?? null,
     }));
     const places = placeNames(named, scene.screen);

@@ -1,4 +1,5 @@
 /** The people that are drawn on the plan, and how each looks.  Pure. */
+import { needsOf } from "../live/alarms";
 import { guarded } from "../live/faults";
 import { displayName, urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../uiState";
@@ -86,6 +87,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     initials: initials(name),
     urgency: urgencyOf(unit, scene.alarms),
     chosen: unit.unit_id === scene.chosen,
+    down: needsOf(unit, scene.alarms).length > 0,
     old,
     ageMs: scene.nowMs - position.t_ms,
     floor: floorRemark(position, scene.floor, old),

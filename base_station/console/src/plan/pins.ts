@@ -84,6 +84,7 @@ export class PinLayer {
         mark: [right, down - STEM_PX],
         widthPx: measureTextWidth(LABEL_FONT, text),
         strong: chosen,
+        first: chosen,
         before: this.sides.get(pinId) ?? "above",
       };
     });

@@ -44,12 +44,16 @@ export function drawnMarks(placed: readonly SectionMark[], paper: Paper): DrawnM
   const { sheet, markPx, nowMs, textWidthPx } = paper;
   const beyond = Math.max(0, (markPx - NAME_MARK_PX) / 2);
   const texts = placed.map((mark) => nameOf(mark, nowMs));
-  const wanted = placed.map(({ xPx, yPx, members, beyond: side }, i) => ({
-    mark: [xPx, yPx] as const,
-    widthPx: textWidthPx(texts[i] ?? "") + 2 * beyond,
-    strong: members.some(isStrong) || side !== 0,
-    before: null,
-  }));
+  const wanted = placed.map(({ xPx, yPx, members, beyond: side }, i) => {
+    const strong = members.some(isStrong) || side !== 0;
+    return {
+      mark: [xPx, yPx] as const,
+      widthPx: textWidthPx(texts[i] ?? "") + 2 * beyond,
+      strong,
+      first: strong, // few: where they are close, they are one mark
+      before: null,
+    };
+  });
   const screen = { size: [sheet.widthPx, sheet.heightPx] as const, covered: paper.covered, standing: [] };
   const names = placeNames(wanted, screen);
   return placed.map((mark, i) => {

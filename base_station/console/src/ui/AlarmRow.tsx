@@ -8,7 +8,7 @@ import { alarmText } from "../live/alarmText";
 import { floodText, raisedOf, takenBy, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
-import { alarmLabel, duration } from "../format";
+import { alarmLabel, duration, MISSED_CHECK_IN } from "../format";
 import { type PlainKey, t } from "../language/translate";
 import { showUnit } from "./showIncident";
 import { useGuardedPress } from "./useGuardedPress";
@@ -100,7 +100,10 @@ function figureOf(alarm: AlarmView, picture: Picture): string {
   return alarmCurrentValue(alarm, unit.value, picture.nowMs.value, picture.silentMs.value > 0);
 }
 
+/** Without that of a PAR: it counts from the last confirmation, and behind "overdue" it would say for how
+ * long the PAR is. */
 function figureBehind(alarm: AlarmView, picture: Picture): string {
+  if (alarm.rule === MISSED_CHECK_IN) return "";
   const figure = figureOf(alarm, picture);
   return figure === "" ? "" : `, ${figure}`;
 }

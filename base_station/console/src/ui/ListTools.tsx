@@ -9,8 +9,11 @@ const ORDERS: readonly Order[] = ["need", "crew", "name"];
 /** Search, order and density of the list. */
 export function ListTools() {
   const field = useRef<HTMLInputElement>(null);
+  const answered = useRef(seeking.peek()); // behind the wall and replays: the key was pressed long ago
   useEffect(() => {
-    if (seeking.value > 0) requestAnimationFrame(() => field.current?.focus());
+    if (seeking.value === answered.current) return;
+    answered.current = seeking.value;
+    requestAnimationFrame(() => field.current?.focus());
   }, [seeking.value]);
   const leave = () => {
     text.value = "";
