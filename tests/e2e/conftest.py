@@ -2,45 +2,26 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
-from tests.e2e.console_files import CONSOLE, DIST
+from tests.e2e.browser import PATIENCE_MS, open_browser
 from tests.e2e.enlisting import enlist
 from tests.e2e.stage import Stage
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
-from tests.rig.waiting import PATIENCE_S
 
-# The one without windows takes half of the processor time.
-CHROMIUM = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 UNIT = "FF-07"
 STATION_AWAY = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE")  # not there, or gone before it answered
-# Nothing is timed here. A loaded machine draws late, and what looks at the past stands back behind
-# everything else that runs on it.
-PATIENCE_MS = PATIENCE_S * 1000
 expect.set_options(timeout=PATIENCE_MS)
 
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    """The system's Chromium; it is closed with the module, and its event loop with it."""
-    program = next(filter(None, map(shutil.which, CHROMIUM)), None)
-    if program is None:
-        pytest.skip("no Chromium on this machine: install chromium-headless-shell")
-    if not (DIST / "index.html").is_file():
-        pytest.skip(f"the console is not built: run npm ci and npm run build in {CONSOLE}")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=program, args=["--no-sandbox", "--disable-gpu"]
-        )
-        browser.on("context", lambda context: context.set_default_timeout(PATIENCE_MS))
-        yield browser
-        browser.close()
+    yield from open_browser()
 
 
 @pytest.fixture(scope="module")

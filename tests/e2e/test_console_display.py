@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,13 @@ from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e.console_page import barriers, choose_theme, close, menu, strip
+from tests.e2e.display_sizes import (
+    ARC_MIN_PER_PX,
+    CAPITALS_PX,
+    GLOVED_PX,
+    SMALLEST_ARC_MIN,
+    TOO_SMALL,
+)
 from tests.e2e.enlisting import NAME
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
@@ -88,50 +94,20 @@ def test_shortcuts_open_dialogs_and_send_nothing(page: Page, mayday: Locator) ->
     close(dialog)
 
 
-# A screen of 24 inches and 1920 x 1080, seen from 2 m; capitals are measured as they are drawn.
-PIXEL_MM = 24 * 25.4 * (16 / math.hypot(16, 9)) / 1920
-ARC_MIN_PER_PX = 60 * math.degrees(math.atan(PIXEL_MM / 2000))
-_CAPITALS_PX = """
-() => {
-  const pen = document.createElement("canvas").getContext("2d");
-  return [...document.querySelectorAll(".wall *")]
-    .filter((one) => one.checkVisibility() && [...one.childNodes].some(
-      ({ nodeType, data }) => nodeType === Node.TEXT_NODE && data.trim() !== ""))
-    .filter((one) => !one.matches(".spoken"))
-    .map((one) => {
-      const { fontWeight, fontSize, fontFamily } = getComputedStyle(one);
-      pen.font = `${fontWeight} ${fontSize} ${fontFamily}`;
-      return [one.textContent, pen.measureText("H").actualBoundingBoxAscent];
-    });
-}
-"""
-
-
 def test_wall_display_is_legible_from_2_m(page: Page, mayday: Locator, tmp_path: Path) -> None:
     page.set_viewport_size({"width": 1920, "height": 1080})
     menu(page, "Display").get_by_role("checkbox", name="Names, state and floor").check()
     close(page.get_by_role("dialog"))
     row = page.get_by_role("list", name="People").get_by_role("listitem").filter(has_text=NAME)
     expect(row).to_contain_text("Mayday")
-    capitals = page.evaluate(_CAPITALS_PX)
+    capitals = page.evaluate(CAPITALS_PX)
     assert len(capitals) >= 5
-    assert [one for one in capitals if one[1] * ARC_MIN_PER_PX < 16] == []
+    assert [one for one in capitals if one[1] * ARC_MIN_PER_PX < SMALLEST_ARC_MIN] == []
     assert barriers(page) == []
     page.screenshot(path=tmp_path / "wall.png")
     page.get_by_role("button", name="Leave wall").click()
     page.set_viewport_size({"width": 1280, "height": 800})
     expect(mayday).to_be_visible()
-
-
-GLOVED_PX = 15 / 25.4 * 96
-_TOO_SMALL = """
-(least) => [...document.querySelectorAll("button, select, summary, input")]
-  .filter((one) => !["checkbox", "radio"].includes(one.type))
-  .filter((one) => one.checkVisibility() && !one.matches(".to-plan"))
-  .map((one) => [one.textContent || one.ariaLabel, one.getBoundingClientRect()])
-  .filter(([, { width, height }]) => Math.min(width, height) < least)
-  .map(([words, { width, height }]) => `${words}: ${width} x ${height}`)
-"""
 
 
 def test_targets_for_gloves_are_15_mm(page: Page, mayday: Locator, tmp_path: Path) -> None:
@@ -141,13 +117,13 @@ def test_targets_for_gloves_are_15_mm(page: Page, mayday: Locator, tmp_path: Pat
     for width, height in ((1920, 1080), (1280, 800), (1024, 768)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_timeout(300)
-        assert page.evaluate(_TOO_SMALL, GLOVED_PX) == [], width
+        assert page.evaluate(TOO_SMALL, GLOVED_PX) == [], width
         page.screenshot(path=tmp_path / f"gloves-{width}.png")
         expect(mayday.get_by_role("button", name="Acknowledge")).to_be_in_viewport(ratio=1)
         expect(page.get_by_role("button", name="Evacuate")).to_be_in_viewport(ratio=1)
     page.set_viewport_size({"width": 1280, "height": 800})
     page.keyboard.press("?")
-    assert page.evaluate(_TOO_SMALL, GLOVED_PX) == []
+    assert page.evaluate(TOO_SMALL, GLOVED_PX) == []
     box.uncheck()
     close(page.get_by_role("dialog"))
 

@@ -4,59 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
-from itertools import pairwise
 from pathlib import Path
 
 import httpx
-import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from shared.messages import Position
 from tests.e2e import scenes
 from tests.e2e.conftest import log_in
 from tests.e2e.console_page import barriers, painted
 from tests.e2e.layout_checks import flaws
 from tests.e2e.station_process import StationProcess
-from tests.e2e.wearable import Wearable
-from tests.rig import message_factory
+from tests.e2e.walker import Corner, Walker
 from tests.rig.waiting import until
-
-Path3 = tuple[tuple[float, float, float], ...]  # north, east, down, m
 
 MEMBER, NEAR, RIC, OUTSIDE = "FF-01", "FF-02", "FF-03", "FF-04"
 NAMES = {MEMBER: "Jonas Bergman", NEAR: "Tomas Novak", RIC: "Mira Okafor", OUTSIDE: "Li Na"}
 CREWS = {MEMBER: "Engine 1", NEAR: "Engine 1", RIC: "RIC", OUTSIDE: "Ladder 4"}
-STAIRS: Path3 = ((8.5, 12.75, 0.0), (11.0, 12.75, -1.6), (11.0, 14.25, -1.6), (8.5, 14.25, -3.2))
-WALKS: dict[str, Path3] = {
+STAIRS: tuple[Corner, ...] = (
+    (8.5, 12.75, 0.0),
+    (11.0, 12.75, -1.6),
+    (11.0, 14.25, -1.6),
+    (8.5, 14.25, -3.2),
+)
+WALKS: dict[str, tuple[Corner, ...]] = {
     MEMBER: ((-4.0, 12.0, 0.0), (7.0, 12.0, 0.0), *STAIRS, (7.0, 14.2, -3.2), (7.0, 20.0, -3.2)),
     NEAR: ((-4.0, 12.0, 0.0), (7.0, 12.0, 0.0), (7.0, 16.0, 0.0)),
     RIC: ((-4.0, 11.0, 0.0), (-4.0, 12.5, 0.0)),
     OUTSIDE: ((-4.0, 8.0, 0.0), (-4.0, 9.0, 0.0)),
 }
-FASTER = 2.5  # than the usual metre a second
-
-
-class Walker(Wearable):
-    """Walks along corners and stays at the last one."""
-
-    def __init__(self, unit_id: str, station: str) -> None:
-        super().__init__(unit_id, station)
-        self._corners = np.array(WALKS[unit_id])
-        legs_m = [float(np.linalg.norm(end - begin)) for begin, end in pairwise(self._corners)]
-        self._walked_m = np.concatenate([[0.0], np.cumsum(legs_m)])
-
-    def _position(self, walked_m: float) -> Position:
-        at_m = min(walked_m * FASTER, float(self._walked_m[-1]))
-        place = [np.interp(at_m, self._walked_m, axis) for axis in self._corners.T]
-        north_m, east_m, down_m = (np.array(place) - self._corners[0]).tolist()
-        return message_factory.position(
-            self._header_factory.header(),
-            north_m=north_m,
-            east_m=east_m,
-            down_m=down_m,
-            distance_m=at_m,
-        )
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +55,10 @@ def walkers(station: StationProcess) -> Iterator[dict[str, Walker]]:
             start = {"north_m": north_m, "east_m": east_m, "std_m": 0.3, "heading_std_rad": 0.05}
             client.put(f"/units/{unit_id}/start", json=start).raise_for_status()
         client.post("/incidents", json={"name": "Mill Road 7"}).raise_for_status()
-        walkers = {one: closing.enter_context(Walker(one, station.bus)) for one in WALKS}
+        walkers = {
+            one: closing.enter_context(Walker(one, station.bus, *walk))
+            for one, walk in WALKS.items()
+        }
 
         def is_there() -> bool:
             routes = client.get(f"/units/{MEMBER}/routes", params={"rescuer_id": RIC})

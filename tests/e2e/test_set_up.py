@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 from ezdxf.filemanagement import new
-from PIL import Image, ImageDraw
+from PIL import Image
 from playwright.sync_api import Browser, FilePayload, Locator, Page, expect
 
 from shared.enrolment import read_enrolment
@@ -28,6 +28,7 @@ from tests.e2e.console_page import (
     menu,
     take_picture,
 )
+from tests.e2e.drawn_paper import click_paper, scan
 from tests.e2e.station_process import StationProcess
 from tests.rig.ifc_house import house_of_two_storeys
 from tests.rig.station_command import Agent
@@ -179,32 +180,6 @@ def kept_of(data: Path, key: bytes) -> list[Path]:
         for path in data.rglob("*")
         if path.is_file() and any(line in path.read_bytes() for line in lines)
     ]
-
-
-def scan() -> bytes:
-    """A floor of 40 m by 20 m on paper, 20 pixels a metre, with a room and a stairwell."""
-    paper = Image.new("RGB", (1000, 600), "white")
-    pen = ImageDraw.Draw(paper)
-    pen.rectangle((100, 100, 900, 500), outline="black", width=6)
-    pen.line((500, 100, 500, 400), fill="black", width=4)
-    pen.rectangle((100, 440, 160, 500), outline="black", width=4)
-    written = io.BytesIO()
-    paper.save(written, "PNG")
-    return written.getvalue()
-
-
-def click_paper(paper: Locator, x: float, y: float, width: float = 1000) -> None:
-    """At a pixel of a picture of that width, once the paper stands still."""
-    paper.click(trial=True)
-    at = paper.evaluate(
-        """(paper, { x, y, width }) => {
-          const per = paper.viewBox.baseVal.width / width;
-          const at = new DOMPoint(x * per, y * per).matrixTransform(paper.getScreenCTM());
-          return [at.x, at.y];
-        }""",
-        {"x": x, "y": y, "width": width},
-    )
-    paper.page.mouse.click(*at)
 
 
 def test_a_picture_becomes_a_plan_in_six_presses(

@@ -41,8 +41,9 @@ SENSORS = (
 class Wearable:
     """Walks north from its start at a metre a second, from ``with`` to its end."""
 
-    def __init__(self, unit_id: str, station: str) -> None:
-        self._bus = ZenohBus(UnitEndpoint((station,)))
+    def __init__(self, unit_id: str, station: str | UnitEndpoint) -> None:
+        """``station``: its address, or the address with the unit's certificate."""
+        self._bus = ZenohBus(UnitEndpoint((station,)) if isinstance(station, str) else station)
         self._header_factory = HeaderFactory(unit_id, secrets.randbits(63), SystemClock())
         self._handler = CommandHandler(self._header_factory, lambda _: None)
         self._repeated: deque[Message] = deque(maxlen=REPEATED)
@@ -53,6 +54,7 @@ class Wearable:
         )
         self._last_command_id = ""
         self.texts: list[str] = []  # of messages to the wearer
+        self.kinds: list[CommandKind] = []  # of all commands, as they came
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._walk, name=unit_id)
 
@@ -123,6 +125,7 @@ class Wearable:
             if command.kind is CommandKind.TEXT and command.command_id != self._last_command_id:
                 self.texts.append(command.text)
             self._last_command_id = command.command_id
+            self.kinds.append(command.kind)
             self._send_repeatedly(self._handler.take(command))
 
     def _send_repeatedly(self, message: Message) -> None:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from threading import Event, Thread
+from typing import NamedTuple
 
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import POSITION, alive_key, channel_of
@@ -43,14 +44,21 @@ class Sent:
     position_times_ns: list[int] = field(default_factory=list)  # sensor times, UTC
 
 
+class Circle(NamedTuple):
+    """A level circle about the start."""
+
+    radius_m: float
+    down_m: float = 0.0
+
+
 class Wearer:
     """Walks round a circle at 1 m/s, and says so: of seven messages five are positions."""
 
-    def __init__(self, unit_id: str, clock: Clock) -> None:
+    def __init__(self, unit_id: str, clock: Clock, circle: Circle | None = None) -> None:
         self.unit_id = unit_id
         self._header_factory = HeaderFactory(unit_id, secrets.randbits(63), clock)
         self._first_ns = clock.monotonic_ns()
-        self._radius_m = random.uniform(*_RADII_M)
+        self._radius_m, self._down_m = circle or Circle(random.uniform(*_RADII_M))
 
     def introduction(self) -> Message:
         return message_factory.description(self._header_factory.header())
@@ -87,7 +95,7 @@ class Wearer:
             header=header,
             north_m=self._radius_m * math.sin(turned_rad),
             east_m=-self._radius_m * math.cos(turned_rad),
-            down_m=0.0,
+            down_m=self._down_m,
             velocity_north_mps=math.cos(turned_rad),
             velocity_east_mps=math.sin(turned_rad),
             velocity_down_mps=0.0,
@@ -111,10 +119,16 @@ class Wearer:
 class BenchUnit:
     """A wearer with a session of its own on the bus."""
 
-    def __init__(self, unit_id: str, endpoint: UnitEndpoint, closing: ExitStack) -> None:
+    def __init__(
+        self,
+        unit_id: str,
+        endpoint: UnitEndpoint,
+        closing: ExitStack,
+        circle: Circle | None = None,
+    ) -> None:
         self.unit_id = unit_id
         self.sent = Sent()
-        self._wearer = Wearer(unit_id, SystemClock())
+        self._wearer = Wearer(unit_id, SystemClock(), circle)
         self._bus = ZenohBus(endpoint)
         closing.callback(self._bus.close)
         self._token = self._bus.declare_alive(alive_key(unit_id))

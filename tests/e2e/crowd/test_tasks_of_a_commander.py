@@ -1,110 +1,23 @@
-"""Tasks of a commander at a real station with 40 and with 200 people, and how many presses each
-takes.  Enrolling a unit and bringing a plan in are counted in ``test_set_up.py``.
+"""Tasks of a commander, and how many presses each takes.  ``test_set_up.py`` counts those of
+enrolling a unit and of bringing a plan in.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
 
-import httpx
-import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import expect
 
-from shared.bus_zenoh import UnitEndpoint
-from tests.e2e import scenes
-from tests.e2e.conftest import log_in
+from shared.messages import CommandKind
 from tests.e2e.console_page import Presses, close, command, menu, press, strip, take_picture
+from tests.e2e.crowd.incident import DOWN, NAMES, Incident, name_of
 from tests.e2e.layout_checks import flaws
-from tests.e2e.station_process import StationProcess
-from tests.e2e.wearable import Wearable
-from tests.rig.simulated_units import BenchUnit, speaking, unit_names
+from tests.rig.simulated_units import unit_names
 from tests.rig.waiting import until
 
-CROWDS = (40, 200)
-CREW_SIZE = 5
-RATE_HZ = 1.0  # of the messages of one of the crowd
-DOWN, RESCUER = "FF-01", "FF-02"
-NAMES = {DOWN: "Jonas Bergman", RESCUER: "Mira Okafor"}
-CREWS = {DOWN: "Engine 1", RESCUER: "RIC"}
-SOUGHT, SOUGHT_UNIT = "Member 031", unit_names(31)[-1]
+SOUGHT, SOUGHT_UNIT = name_of(30), unit_names(31)[-1]
 GUARD_MS = 600  # a list takes no press of a user who meant what stood there before
-START = {"north_m": -6.0, "east_m": 12.0, "std_m": 0.3, "heading_std_rad": 0.05}
-
-
-class Incident(NamedTuple):
-    """A real incident with a crowd, of whom one is down."""
-
-    page: Page
-    people: int
-    down: Wearable
-    rescuer: Wearable
-
-
-def set_up(client: httpx.Client, crowd: list[str]) -> None:
-    """Plan, people in crews, units that they wear, and the incident."""
-    plan = {"content-type": "application/json"}
-    client.put("/site/plan", content=scenes.PLAN.read_bytes(), headers=plan).raise_for_status()
-    names = NAMES | {unit: f"Member {number:03}" for number, unit in enumerate(crowd, 1)}
-    crews = CREWS | {unit: f"Ladder {number // CREW_SIZE + 1}" for number, unit in enumerate(crowd)}
-    lines = ["Name,Crew,Role", *(f"{names[unit]},{crews[unit]}," for unit in names)]
-    client.post("/people/import", content="\n".join(lines).encode()).raise_for_status()
-    persons = {one["name"]: one["person_id"] for one in client.get("/people").json()}
-    for unit_id, name in names.items():
-        client.post("/units", json={"unit_id": unit_id}).raise_for_status()
-        worn = {"unit_id": unit_id, "person_id": persons[name]}
-        client.post("/assignments", json=worn).raise_for_status()
-    for unit_id in NAMES:
-        client.put(f"/units/{unit_id}/start", json=START).raise_for_status()
-    client.post("/incidents", json={"name": "Mill Road 7"}).raise_for_status()
-
-
-@pytest.fixture(scope="module", params=CROWDS)
-def incident(
-    request: pytest.FixtureRequest, chromium: Browser, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Incident]:
-    with ExitStack() as closing:
-        station = StationProcess(tmp_path_factory.mktemp("tasks") / "station")
-        station.start()
-        closing.callback(station.stop)
-        client = closing.enter_context(httpx.Client(base_url=f"{station.address}/api/v1"))
-        username, password = station.login()
-        client.headers["origin"] = station.address
-        login = {"username": username, "password": password}
-        client.post("/login", json=login).raise_for_status()
-        crowd = unit_names(request.param - len(NAMES))
-        set_up(client, crowd)
-        worn = {one: closing.enter_context(Wearable(one, station.bus)) for one in NAMES}
-        endpoint = UnitEndpoint((station.bus,))
-        units = [BenchUnit(one, endpoint, closing) for one in crowd]
-        until(lambda: all(one.is_received for one in units), "the station listens")
-        for one in units:
-            one.introduce()
-        for member in worn.values():
-            member.describe("sounder")
-        closing.enter_context(speaking(units, RATE_HZ))
-        page = chromium.new_page(viewport={"width": 1920, "height": 1080}, reduced_motion="reduce")
-        closing.callback(page.close)
-        log_in(page, station)
-        worn[DOWN].press_mayday()
-        yield Incident(page, request.param, worn[DOWN], worn[RESCUER])
-
-
-@pytest.fixture(autouse=True)
-def no_dialog(incident: Incident) -> None:
-    """Close the dialog that a failed test has left open, or all that follow would fail as well."""
-    while (dialog := incident.page.locator("dialog[open]")).count():
-        dialog.first.press("Escape")
-
-
-def answer(button: Locator) -> None:
-    """Press the answer to a question, once the page takes it for no double press."""
-    expect(button).to_be_visible()
-    button.page.wait_for_timeout(GUARD_MS)
-    button.click()
 
 
 def test_member_who_is_down_is_shown_without_a_press(incident: Incident, tmp_path: Path) -> None:
@@ -139,6 +52,9 @@ def test_sound_locator_takes_one_press_on_the_chosen_card(incident: Incident) ->
     card.get_by_role("button", name="Sound locator").click()
     expect(card.get_by_role("button", name="Stop sound locator")).to_be_visible()
     assert presses.count() == 1
+    until(lambda: incident.down.kinds[-1:] == [CommandKind.LOCATE], "the order at the unit")
+    incident.down.notify("sound")
+    expect(card.locator(".card-commands")).to_contain_text("sounds since")
 
 
 def test_evacuation_takes_two_presses_and_its_all_clear_two(
@@ -154,7 +70,7 @@ def test_evacuation_takes_two_presses_and_its_all_clear_two(
     assert flaws(page) == []
     presses = Presses(page)
     dialog.get_by_role("button", name="All clear").click()
-    answer(dialog.get_by_role("button", name="Yes, all clear"))
+    press(dialog.get_by_role("button", name="Yes, all clear"))
     expect(dialog).to_contain_text("All clear (")
     assert presses.count() == 2
     close(dialog)
@@ -179,7 +95,7 @@ def test_par_of_a_member_in_alarm_takes_three_presses(incident: Incident, tmp_pa
     press(row.get_by_role("button", name="Confirm by radio"))
     expect(row.get_by_role("button", name="Yes, answered by radio")).to_be_visible()
     take_picture(page, tmp_path, f"par-{incident.people}.png")
-    answer(row.get_by_role("button", name="Yes, answered by radio"))
+    press(row.get_by_role("button", name="Yes, answered by radio"))
     expect(row).to_contain_text("by radio, entered by admin")
     assert presses.count() == 3
     close(dialog)
@@ -231,3 +147,4 @@ def test_closing_names_who_is_down(incident: Incident, tmp_path: Path) -> None:
     take_picture(page, tmp_path, f"closing-{incident.people}.png")
     dialog.get_by_role("button", name="No", exact=True).click()
     close(dialog)
+    incident.confirm_par()
