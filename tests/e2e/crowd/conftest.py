@@ -14,16 +14,20 @@ from tests.e2e.crowd.incident import CROWDS, SCREEN, Incident, incident_of
 # As in the life of an incident: the plan is replaced behind all that looks at it, and the incident
 # is closed last.  Each module passes alone as well.
 ORDER = ("tasks_of_a_commander", "rescue", "floors", "people", "orders", "display", "alarms")
-LAST = ("set_up", "station_away", "closing")
+LAST = ("set_up", "wire", "station_away", "closing")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Take the modules of this package in their order."""
+    """Take all modules of this package with one station, then all with the other."""
     folder = Path(__file__).parent
     places = {folder / f"test_{name}.py": n for n, name in enumerate((*ORDER, *LAST))}
-    ordered = iter(
-        sorted((one for one in items if one.path in places), key=lambda one: places[one.path])
-    )
+
+    def turn(item: pytest.Item) -> tuple[int, int]:
+        assert isinstance(item, pytest.Function)
+        return CROWDS.index(item.callspec.params["incident"]), places[item.path]
+
+    ordered = iter(sorted((one for one in items if one.path in places), key=turn))
     items[:] = [next(ordered) if one.path in places else one for one in items]
 
 

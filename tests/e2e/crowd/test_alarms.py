@@ -1,4 +1,4 @@
-"""Alarms of many at once: one row for a flood, casualties in sight, the list, and how they end."""
+"""Alarms of many at once: one row for a flood, casualties in sight, arrows, and the list."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from shared.messages import CommandKind
-from tests.e2e.console_page import close, drawn, painted, press, strip, take_picture
+from tests.e2e.console_page import close, drawn, press, strip, take_picture
 from tests.e2e.crowd.incident import DOWN, NAMES, Incident
 from tests.e2e.layout_checks import flaws
-from tests.rig.waiting import until
 
 SIZES = ((1920, 1080), (390, 844), (844, 390))
 CALLERS = 4  # of the crowd, besides the one who is down
 OTHERS = 2  # people whose units are not of the crowd
-LESS = 100  # pixels
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -110,27 +107,3 @@ def test_list_of_all_alarms_is_filtered(incident: Incident, tmp_path: Path) -> N
     take_picture(page, tmp_path, f"alarms-{incident.people}.png")
     assert flaws(page) == []
     close(dialog)
-
-
-def test_wearer_gets_the_acknowledgement_and_the_way_stays_until_the_resolution(
-    incident: Incident,
-) -> None:
-    page = incident.page
-    mine = rows(page).filter(has_text=f"Mayday from {NAMES[DOWN]}")
-    acknowledge = mine.get_by_role("button", name="Acknowledge")
-    if acknowledge.count():  # no task has done it
-        acknowledge.press("Enter")
-    expect(mine.get_by_role("button", name="Resolve")).to_be_visible()
-    acknowledged = CommandKind.MAYDAY_ACKNOWLEDGED
-    until(lambda: acknowledged in incident.down.kinds, "the acknowledgement at the unit")
-    page.get_by_role("group", name="Floor shown").get_by_role("button", name="Floor 1").click()
-    page.get_by_role("button", name="Fit").click()
-    drawn(page)
-    before = painted(page, "--immediate")
-    mine.get_by_role("button", name="Resolve").press("Enter")
-    dialog = page.get_by_role("dialog", name="Resolve this alarm")
-    press(dialog.get_by_role("button", name="Found and helped"))
-    expect(mine).to_have_count(0)
-    expect(casualties(page)).to_have_count(CALLERS)
-    drawn(page)
-    assert painted(page, "--immediate") < before - LESS
