@@ -22,12 +22,14 @@ from base_station.replay.processes.jobs import (
     ArchivedLog,
     ArchiveJob,
     CatchUpJob,
+    IncidentJob,
     Job,
     PostProcessingJob,
     RehearsalJob,
     ReplayJob,
     ReportJob,
     TimelineJob,
+    WholeIncidentJob,
     read_job,
 )
 from base_station.replay.processes.post_processing_work import (
@@ -100,12 +102,7 @@ def work(line: FrameChannel) -> None:
 
 def _log_of(job: Job, own: FolderFeed, flaws: LogDefects) -> LogFeed:
     match job:
-        case (
-            ReplayJob(archived=ArchivedLog() as archived)
-            | PostProcessingJob(archived=ArchivedLog() as archived)
-            | ReportJob(archived=ArchivedLog() as archived)
-            | RehearsalJob(archived=ArchivedLog() as archived)
-        ):
+        case IncidentJob(archived=ArchivedLog() as archived):
             return opened_copy(archived, flaws)
     return own
 
@@ -128,9 +125,7 @@ def _archive(
 def _flaws_of(job: Job) -> LogDefects:
     log = Path(job.log)
     match job:
-        case ReplayJob() | PostProcessingJob() | ReportJob() | RehearsalJob() if (
-            job.archived is not None
-        ):
+        case IncidentJob(archived=ArchivedLog()):
             return LogDefects(Path(job.incident_id))  # no folder of this machine
         case ArchiveJob():
             return LogDefects(log, (), is_written=True)
@@ -138,7 +133,7 @@ def _flaws_of(job: Job) -> LogDefects:
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
         case CatchUpJob():
             return LogDefects(log, (), is_written=True, from_ns=job.since_ns)
-        case PostProcessingJob() | ReportJob() | RehearsalJob():
+        case WholeIncidentJob():
             return LogDefects(
                 log,
                 job.known_segments,

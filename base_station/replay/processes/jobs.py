@@ -23,77 +23,71 @@ class ArchivedPart(msgspec.Struct, frozen=True):
     log: ArchivedLog
 
 
-class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
+class LogJob(msgspec.Struct, frozen=True, kw_only=True):
+    """Job on a station's log."""
+
+    log: str  # its folder
+
+
+class IncidentJob(LogJob, frozen=True, kw_only=True):
+    """Job on the log of an incident."""
+
+    incident_id: str
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
+    archived: ArchivedLog | None = None  # log that is read instead of the station's own
+
+
+class WholeIncidentJob(IncidentJob, frozen=True, kw_only=True):
+    """Job on an incident from its beginning to its end."""
+
+    database: str
+    opened_ns: int
+    closed_ns: int | None
+
+
+class ReplayJob(IncidentJob, frozen=True, kw_only=True, tag="replay"):
     """Job: replay a window of the log for one user's consoles."""
 
-    log: str
     checkpoints: str
-    incident_id: str
     start_ns: int
     end_ns: int
     speed: float
-    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
-class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
+class PostProcessingJob(WholeIncidentJob, frozen=True, kw_only=True, tag="look_back"):
     """Job: post-process an incident, and save the result."""
 
-    log: str
     checkpoints: str
-    database: str
-    incident_id: str
-    opened_ns: int
-    closed_ns: int | None
     late_data_ns: int
     now_ns: int  # station time
     memory_mb: int  # of its own, at most
-    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
-class ReportJob(msgspec.Struct, frozen=True, tag="report"):
+class ReportJob(WholeIncidentJob, frozen=True, kw_only=True, tag="report"):
     """Job: write the report on an incident."""
 
-    log: str
-    database: str
-    incident_id: str
-    opened_ns: int
-    closed_ns: int | None
     as_pdf: bool
-    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
-class RehearsalJob(msgspec.Struct, frozen=True, tag="rehearse"):
+class RehearsalJob(WholeIncidentJob, frozen=True, kw_only=True, tag="rehearse"):
     """Job: rehearse alarm thresholds over an incident."""
 
-    log: str
     checkpoints: str
-    database: str
-    incident_id: str
-    opened_ns: int
-    closed_ns: int | None
     points: tuple[Thresholds, ...]
     swept: str  # the threshold that a sweep changes; empty: it is none
-    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
-    archived: ArchivedLog | None = None  # log that is read instead of the station's own
 
 
-class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
+class CatchUpJob(LogJob, frozen=True, kw_only=True, tag="catch_up"):
     """Job: write the tables from the log, from a time on."""
 
-    log: str
     checkpoints: str
     database: str
     since_ns: int  # station time
-    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
 
 
-class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
+class TimelineJob(LogJob, frozen=True, kw_only=True, tag="timeline"):
     """Job: read the timeline of a unit."""
 
-    log: str
     database: str
     unit_id: str
     from_ns: int
@@ -103,10 +97,9 @@ class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
     archived: tuple[ArchivedPart, ...] = ()  # of which the station's own log has no more
 
 
-class ArchiveJob(msgspec.Struct, frozen=True, tag="archive"):
+class ArchiveJob(LogJob, frozen=True, kw_only=True, tag="archive"):
     """Job: copy the closed incidents into an archive."""
 
-    log: str
     database: str
     location: str  # of the archive
     has_radio: bool  # with the audio of the radio channels

@@ -188,14 +188,14 @@ class ReplayProcess:
         self._place.prepare()
         window = self._window
         job = ReplayJob(
-            self._place.log,
-            self._place.checkpoints,
-            window.incident_id,
-            window.start_ns,
-            window.end_ns,
-            self.view().speed,
-            tuple(self._place.known_segments()),
-            self._archived,
+            log=self._place.log,
+            checkpoints=self._place.checkpoints,
+            incident_id=window.incident_id,
+            start_ns=window.start_ns,
+            end_ns=window.end_ns,
+            speed=self.view().speed,
+            known_segments=tuple(self._place.known_segments()),
+            archived=self._archived,
         )
         line = self._place.processes.start(job)
         with self._lock:

@@ -190,9 +190,15 @@ def test_stopping_station_starts_no_more_replays(place: ReplayContext) -> None:
 _STATION = """
 import sys, time
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.jobs import (ReplayJob)
+from base_station.replay.processes.jobs import ReplayJob
+log, checkpoints, start_ns = sys.argv[1:]
 processes = ReplayProcesses()
-line = processes.start(ReplayJob(sys.argv[1], sys.argv[2], "i1", int(sys.argv[3]), 2**62, 1.0))
+line = processes.start(
+    ReplayJob(
+        log=log, checkpoints=checkpoints, incident_id="i1", start_ns=int(start_ns), end_ns=2**62,
+        speed=1.0,
+    )
+)
 line.receive()
 print(processes.pid, flush=True)
 time.sleep(600)
