@@ -83,6 +83,16 @@ def gyro_scale(share: float) -> Change:
     return change
 
 
+def gyro_scale_of_all_axes(share: float) -> Change:
+    """All axes off by ``share`` alike, up or down: what landings show least."""
+
+    def change(description: SensorDescription, imu: ImuBatch, rng: np.random.Generator) -> Made:
+        scale = 1.0 + share * rng.choice((-1.0, 1.0))
+        return description, _with(imu, imu.accel_mps2, scale * imu.gyro_radps)
+
+    return change
+
+
 def thrice_the_noise(
     description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
 ) -> Made:
@@ -237,6 +247,8 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("100 Hz, filtered", slower(100.0, filtered=True)),
     Perturbation("66 Hz, filtered", slower(66.0, filtered=True)),
     Perturbation("66 Hz, unfiltered", slower(66.0, filtered=False)),
+    Perturbation("gyroscope scale alike, 1 % off", gyro_scale_of_all_axes(0.01)),
+    Perturbation("gyroscope scale alike, 3 % off", gyro_scale_of_all_axes(0.03)),
 )
 
 

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from edge.samples import SensorDescription
-from tests.bench.tracker.perturbations import PERTURBATIONS, gyro_clipped, other_mount, slower
+from tests.bench.tracker.perturbations import (
+    PERTURBATIONS,
+    gyro_clipped,
+    gyro_scale_of_all_axes,
+    other_mount,
+    slower,
+)
 from tests.bench.tracker.perturbed_walks import Outcome, perturbed_table
 from tests.rig.exact_strides import walk
 
@@ -40,6 +46,17 @@ def test_changed_mount_is_a_rotation(full_scale):
     assert np.linalg.det(turn) == pytest.approx(1.0)
     if full_scale is not None:
         assert set(np.round(np.abs(turn), 9).ravel()) == {0.0, 1.0}
+
+
+def test_a_scale_of_all_axes_is_one_factor_and_goes_up_and_down():
+    before = WALK.imu.gyro_radps
+    seen = set()
+    for number in range(20):
+        change = gyro_scale_of_all_axes(0.03)
+        _, imu = change(WALK.description, WALK.imu, np.random.default_rng(number))
+        (factor,) = set(np.round(imu.gyro_radps[before != 0.0] / before[before != 0.0], 9))
+        seen.add(float(factor))
+    assert seen == {0.97, 1.03}
 
 
 def test_slow_filtered_sensor_turns_by_as_much():
