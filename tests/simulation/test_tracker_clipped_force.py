@@ -14,6 +14,7 @@ from edge.simulation.simulation import Simulation
 from edge.tracker.interface import Reason
 from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
 from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.bench.tracker.wearers import KINDS, stray
 from tests.rig.inertial_walk import inertial_samples
 
 LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
@@ -39,3 +40,12 @@ def test_clipped_force_is_recovered_at_the_next_stance(full_scale_g, short, is_r
     nees = horizontal_nees(rows.position_n_m[every], way_m[every], rows.position_cov_m2[every])
     assert np.mean(nees <= CHI2_95_2DOF) > 0.9
     assert np.mean(rows.reasons & int(Reason.ACCEL_SATURATED) != 0) > 0.3
+
+
+@pytest.mark.parametrize("seed", [100, 104])
+def test_velocity_of_a_poor_sensor_does_not_refuse_the_stances_of_a_sprint(seed):
+    """The foot seems to fall, and the push to the next stride looks like its landing."""
+    kind = next(one for one in KINDS if one.does.startswith("sprints"))
+    errors = stray(kind, seed, calibrated=False)
+    assert errors.error_m < 15.0
+    assert errors.inside > 0.9

@@ -54,6 +54,16 @@ def test_loop_that_is_crawled_from_the_first_sample_on_is_never_silently_wrong(s
     assert errors.silent == 0.0
 
 
+@pytest.mark.parametrize("seed", [100, 103])
+def test_crawl_with_a_data_sheet_sensor_is_held(seed):
+    """Its swings are too slow to show the gains, so those of a data sheet turn it."""
+    kind = next(one for one in KINDS if one.does == "crawls 34 m")
+    errors = stray(kind, seed, calibrated=False)
+    assert abs(errors.heading_rad) > 0.25  # or nothing is tested
+    assert abs(errors.heading_rad) < 2.0 * errors.heading_std_rad
+    assert errors.inside > 0.95
+
+
 def standing(motion_m2ps4, speed_mps):
     """A ring of one sample, and a filter that is sure of its velocity by a decimetre a second."""
     ring = np.zeros(1, RING)

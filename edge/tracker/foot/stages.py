@@ -151,6 +151,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
         state.least_known_axis_b[i] = state.rotation_nb[2, i]
     state.mean_zupt_residual = config.residuals.mean_zupt_residual
     state.mean_scale_residual = config.residuals.mean_zupt_residual
+    state.mean_gain_residual = config.residuals.mean_zupt_residual
     state.gain_residual = config.residuals.mean_zupt_residual
     state.mean_strike_residual = config.residuals.mean_strike_residual
     start_bridges(state, config)

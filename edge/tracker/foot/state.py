@@ -178,6 +178,7 @@ RIVAL = np.dtype(
         ("mean_zupt_residual", np.float64),
         ("mean_strike_residual", np.float64),
         ("mean_scale_residual", np.float64),
+        ("mean_gain_residual", np.float64),
         ("gain_residual", np.float64),
         ("misfit_n_m", np.float64, 3),
     ],
@@ -242,6 +243,8 @@ FILTER = np.dtype(
             "mean_scale_residual",
             np.float64,
         ),  # mean of landings that tell of the gains, at an ordinary speed
+        ("mean_gain_residual", np.float64),  # the same as reported, bounded at that speed
+        ("gain_landing_count", np.float64),  # that have shown the gains
         ("gain_residual", np.float64),  # the largest such mean
         ("faulty_stride", np.bool_),  # since the last lift-off
         # Whether stances and swings agree; see stance_consistency.

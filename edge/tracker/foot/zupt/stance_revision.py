@@ -61,6 +61,7 @@ def weigh_stance(progress: Progress, state: FilterState, t_s: float, config: Esk
     rival.mean_zupt_residual = state.mean_zupt_residual
     rival.mean_strike_residual = state.mean_strike_residual
     rival.mean_scale_residual = state.mean_scale_residual
+    rival.mean_gain_residual = state.mean_gain_residual
     rival.gain_residual = state.gain_residual
     for i in range(SIZE):
         rival.error[i] = 0.0
@@ -125,6 +126,7 @@ def _undo_stance(state: FilterState, config: EskfConfig) -> None:
     state.mean_zupt_residual = rival.mean_zupt_residual
     state.mean_strike_residual = rival.mean_strike_residual
     state.mean_scale_residual = rival.mean_scale_residual
+    state.mean_gain_residual = rival.mean_gain_residual
     state.gain_residual = rival.gain_residual
 
 

@@ -72,7 +72,11 @@ def is_gliding(
         return False
     down_mps = state.velocity_n_mps[2]
     std_mps = math.sqrt(state.covariance[VELOCITY + 2, VELOCITY + 2])
-    if down_mps > config.zupt.landing_gate * std_mps and _lands_soon(ring, progress, k, config):
+    # In a fast gait a stance is among the samples of a stride: who refuses more refuses that, too.
+    stride_s = config.detection.stride_past_s + config.timing.lookahead_s
+    swinging = ring[slot].t_s - progress.last_stance_s <= stride_s
+    falling = down_mps > config.zupt.landing_gate * std_mps
+    if swinging and falling and _lands_soon(ring, progress, k, config):
         return True
     if ring[slot].motion_m2ps4 <= ring[slot].stride_minimum_m2ps4:
         return False

@@ -44,7 +44,8 @@ def on_footfall(ring: Ring, step: Step, state: FilterState, slot: int, config: E
         lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
         residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
         squares += residual_mps * residual_mps
-    residual = min(math.sqrt(squares) / state.swing_rad, config.residuals.zupt_residual_max)
+    shown = math.sqrt(squares) / state.swing_rad
+    residual = min(shown, config.residuals.zupt_residual_max)
     lever_velocity_row(state.rotation_nb, state.gyro_radps, 2, row)
     down_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[2]
     vertical_residual = min(abs(down_mps) / state.swing_rad, config.residuals.zupt_residual_max)
@@ -61,18 +62,25 @@ def on_footfall(ring: Ring, step: Step, state: FilterState, slot: int, config: E
         / (config.residuals.strike_prior_count + state.strike_count)
     )
     if state.swing_speed_mps > config.residuals.zupt_residual_slow_mps:
-        residual *= min(config.residuals.zupt_residual_speed_mps / state.swing_speed_mps, 1.0)
-        state.mean_scale_residual += weight * (residual - state.mean_scale_residual)
-        _remember_gains(state, config)
+        slower = min(config.residuals.zupt_residual_speed_mps / state.swing_speed_mps, 1.0)
+        state.mean_scale_residual += weight * (slower * residual - state.mean_scale_residual)
+        shown = min(slower * shown, config.residuals.zupt_residual_max)
+        _learn_gains(state, shown, weight, config)
 
 
 @njit()
-def _remember_gains(state: FilterState, config: EskfConfig) -> None:
-    """Hold the largest mean residual: gains are constant, and later landings show less of them."""
+def _learn_gains(state: FilterState, residual: float, weight: float, config: EskfConfig) -> None:
+    """Take a landing that shows the gains into the residual by which they are reported.
+
+    Once there are enough landings the largest mean is held: gains are constant, and later landings
+    show less of them.
+    """
+    state.gain_landing_count += 1.0
+    state.mean_gain_residual += weight * (residual - state.mean_gain_residual)
     if state.zupt_residual_count < config.residuals.zupt_residual_memory:
-        state.gain_residual = state.mean_scale_residual
+        state.gain_residual = state.mean_gain_residual
     else:
-        state.gain_residual = max(state.gain_residual, state.mean_scale_residual)
+        state.gain_residual = max(state.gain_residual, state.mean_gain_residual)
 
 
 @njit()
@@ -130,8 +138,13 @@ def scale_error_inflation(state: FilterState, config: EskfConfig) -> float:
 
 @njit()
 def reported_gain_inflation(state: FilterState, config: EskfConfig) -> float:
-    """Return the factor on the variance of the gains, as all landings of this sensor show them."""
-    return _gain_share(state, state.gain_residual, config)
+    """Return the factor on the variance of the gains, as all landings of this sensor show them.
+
+    Few landings after fast swings leave a part of what a data sheet allows, none all of it.
+    """
+    shown = _gain_share(state, state.gain_residual, config)
+    unseen = 1.0 - state.gain_landing_count / config.residuals.gain_landings
+    return float(shown + max(unseen, 0.0) * max(1.0 - shown, 0.0))
 
 
 @njit()

@@ -7,9 +7,9 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.error_state import SIZE, VELOCITY
-from edge.tracker.foot.state import STEP, new_filter_state
-from edge.tracker.foot.zupt.zupt import apply_zupt
-from edge.tracker.preprocessing.sample_ring import RING
+from edge.tracker.foot.state import STEP, new_filter_state, new_progress
+from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding
+from edge.tracker.preprocessing.sample_ring import RING, new_ring
 
 CONFIG = config_record(EskfConfig())[0]
 PERIOD_S = 0.005
@@ -32,3 +32,22 @@ def test_a_still_sample_is_worth_the_time_since_the_one_before():
 
 def test_after_a_hole_it_tells_of_its_own_moment():
     assert left_m2ps2(0.05) == pytest.approx(left_m2ps2(PERIOD_S), rel=1e-9)
+
+
+def is_refused(since_s):
+    """Whether a sample is refused that falls and lands soon, so long after the last stance."""
+    ring, progress, state = new_ring(200.0), new_progress()[0], new_filter_state()[0]
+    ring["t_s"] = np.arange(len(ring)) * PERIOD_S
+    ring["motion_m2ps4"], ring["stride_minimum_m2ps4"] = 10.0, 10.0
+    ring["motion_m2ps4"][10:] = 1e3  # by a force: nothing turns
+    progress["measured"], progress["last_stance_s"] = 20, -since_s
+    state["velocity_n_mps"][2] = 0.5
+    state["covariance"][VELOCITY + 2, VELOCITY + 2] = 0.1**2
+    return is_gliding(ring.view(np.recarray), progress, state, 0, CONFIG)
+
+
+@pytest.mark.slow
+def test_a_foot_that_falls_and_lands_soon_is_refused_for_one_stride_only():
+    """Longer, and a wrong velocity would refuse every stance that could correct it."""
+    assert is_refused(0.5)
+    assert not is_refused(1.3)

@@ -82,11 +82,11 @@ def test_gains_that_a_compass_has_observed_are_left_to_it():
     assert gains(0.05, compass=True) == pytest.approx(1.0)
 
 
-def land(state, residual, *, times):
+def land(state, residual, *, times, swing_speed_mps=4.0):
     """So many landings after swings of 3 rad, each off by ``residual`` for a radian."""
     ring, step = new_ring(200.0), np.zeros(1, STEP)[0]
     for _ in range(times):
-        state["swing_rad"], state["swing_speed_mps"] = 3.0, 4.0
+        state["swing_rad"], state["swing_speed_mps"] = 3.0, swing_speed_mps
         state["velocity_n_mps"] = (3.0 * residual, 0.0, 0.0)
         state["covariance"][VELOCITY + 2, VELOCITY + 2] = 1e-4
         on_footfall(ring, step, state, 0, CONFIG)
@@ -113,3 +113,32 @@ def test_gains_are_as_early_landings_show_them_until_enough_of_them_have_been_se
     louder = reported_gain_inflation(state, CONFIG)
     land(state, 0.01, times=20)
     assert reported_gain_inflation(state, CONFIG) < louder
+
+
+def started():
+    """A state as it is before any landing, of a sensor that nobody has described."""
+    state = new_filter_state()[0]
+    state["rotation_nb"] = np.eye(3)
+    usual = CONFIG["residuals"]["mean_zupt_residual"]
+    state["mean_gain_residual"] = state["gain_residual"] = usual
+    return state
+
+
+@pytest.mark.slow
+def test_gains_that_no_landing_has_shown_are_those_of_a_data_sheet():
+    """Swings of a crawl are too slow to show them, and their landings are no evidence."""
+    state = started()
+    land(state, 0.01, times=60, swing_speed_mps=1.5)
+    assert reported_gain_inflation(state, CONFIG) == pytest.approx(1.0)
+    land(state, 0.01, times=3)
+    assert 0.5 < reported_gain_inflation(state, CONFIG) < 0.8
+    land(state, 0.01, times=60)
+    assert reported_gain_inflation(state, CONFIG) < 0.2
+
+
+@pytest.mark.slow
+def test_landings_of_a_sprint_show_gains_that_are_worse_than_a_data_sheet():
+    """The effect of the gains grows with the speed: the bound is for what is left of it."""
+    state = started()
+    land(state, 0.09, times=60, swing_speed_mps=15.0)
+    assert reported_gain_inflation(state, CONFIG) > 1.0
