@@ -7,7 +7,8 @@ from pathlib import Path
 from tests.rig.module_order import WAITING, WAITING_END, by_turns
 
 TESTS = Path(__file__).resolve().parents[1]
-MODULES = sorted(TESTS.rglob("test_*.py"))
+ALONE = TESTS / "e2e/crowd"  # behind all others
+MODULES = sorted(one for one in TESTS.rglob("test_*.py") if not one.is_relative_to(ALONE))
 
 
 def test_every_module_comes_once_and_those_of_a_folder_in_their_order() -> None:

@@ -46,7 +46,7 @@ def incident(
 
 @pytest.fixture(autouse=True)
 def usual_screen(incident: Incident) -> None:
-    """What a failed test has left open or small would make all that follow fail as well."""
+    """Close and enlarge: a page that a failed test has left would make all that follow fail."""
     page = incident.page
     while (dialog := page.locator("dialog[open]")).count():
         dialog.first.press("Escape")

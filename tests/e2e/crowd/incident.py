@@ -53,7 +53,7 @@ APART_M = 0.45  # in a room
 
 
 class Place(NamedTuple):
-    """Where a member of the crowd walks."""
+    """Course of a member of the crowd."""
 
     middle: Corner
     circle: Circle
@@ -82,7 +82,7 @@ class Crowd:
 
 
 class Incident(NamedTuple):
-    """What the tests act on."""
+    """Station, page and units that the tests act on."""
 
     page: Page
     client: httpx.Client  # of the API, as the user of the page
@@ -93,12 +93,12 @@ class Incident(NamedTuple):
     rescuer: Walker
 
     def confirm_par(self) -> None:
-        """Of everybody, by radio: the PARs that an evacuation makes due are no alarms later."""
+        """Confirm everybody by radio, or the PARs of an evacuation would be alarms later."""
         self.client.post("/check-ins", json={"target": {"everyone": True}}).raise_for_status()
 
 
 def name_of(number: int) -> str:
-    """Of the crowd; no two of 208 have the same."""
+    """Name of one of the crowd; no two of 208 have the same."""
     return f"{FIRST_NAMES[number % len(FIRST_NAMES)]} {LAST_NAMES[number % len(LAST_NAMES)]}"
 
 
@@ -139,7 +139,7 @@ def set_up(client: httpx.Client, crowd: list[str]) -> None:
 
 
 def is_upstairs(client: httpx.Client) -> bool:
-    """Whether the station shows the member who goes down where that will be."""
+    """True once the station shows the member who goes down at the last corner."""
     routes = client.get(f"/units/{DOWN}/routes", params={"rescuer_id": RESCUER})
     if routes.status_code != httpx.codes.OK:
         return False

@@ -29,7 +29,7 @@ def end(incident: Incident, dialog: Locator) -> None:
     incident.confirm_par()
 
 
-def test_crew_is_evacuated_and_whoever_has_not_answered_is_first(
+def test_crew_is_evacuated_and_members_without_an_answer_are_first(
     incident: Incident, tmp_path: Path
 ) -> None:
     page = incident.page
