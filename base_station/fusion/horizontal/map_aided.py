@@ -19,6 +19,7 @@ from base_station.fusion.gaussian import jeffrey_update
 from base_station.fusion.horizontal.compass_aided import CompassAidedFilter, SavedCompassAided
 from base_station.fusion.horizontal.heading_hypotheses import GnssObservation
 from base_station.fusion.horizontal.map_particle_filter import MapParticleFilter, SavedMapParticles
+from base_station.fusion.horizontal.plan_doubt import mixture, part_without_plan
 from base_station.fusion.horizontal.state import place_jacobian, turn_and_std
 from base_station.fusion.interface import CompassHeading
 from base_station.fusion.kernels import DRIFT, HorizontalEstimate, estimate_before
@@ -103,13 +104,17 @@ class MapAidedFilter:
 
     def moments(self) -> tuple[Floats, Floats]:
         """Mean (9,) and covariance (9, 9) of the state of ``HorizontalFilter``."""
-        return self._plain.moments() if self._cloud is None else self._cloud.moments()
+        if self._cloud is None:
+            return self._plain.moments()
+        part = part_without_plan(self._cloud.wall_log_loss) if self._plain.is_linear else 0.0
+        walled = self._cloud.moments()
+        return mixture(part, self._plain.moments(), walled) if part else walled
 
     def estimate_before(self, north_m: float, east_m: float) -> HorizontalEstimate:
         """Estimate before this much of own path was walked."""
         if self._cloud is None:
             return self._plain.estimate_before(north_m, east_m)
-        return HorizontalEstimate(*estimate_before(*self._cloud.moments(), north_m, east_m))
+        return HorizontalEstimate(*estimate_before(*self.moments(), north_m, east_m))
 
     def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
         """Place and covariance before this much of own path was walked, as it looks now."""
@@ -218,7 +223,7 @@ class MapAidedFilter:
             self._cloud = None
             self._to_walk_m = RETRY_M
         elif distance_outside_m > AWAY_M:
-            self._plain.set_state(*self._cloud.moments())
+            self._plain.set_state(*self.moments())
             self._cloud = None
 
     def _is_astray(self, cloud: MapParticleFilter) -> bool:
@@ -265,6 +270,6 @@ class MapAidedFilter:
     def reframe(self, turn_rad: float, north_m: float, east_m: float) -> None:
         """The cloud, if any, is taken up by the filter first: its walls stay where they are."""
         if self._cloud is not None:
-            self._plain.set_state(*self._cloud.moments())
+            self._plain.set_state(*self.moments())
             self._cloud = None
         self._plain.reframe(turn_rad, north_m, east_m)

@@ -93,6 +93,11 @@ class MapParticleFilter:
         return self._contradiction > OBSTRUCTED
 
     @property
+    def wall_log_loss(self) -> float:
+        """Logarithm (0 or more) of the likelihood that crossed walls have cost of late."""
+        return self._contradiction / CONTRADICTION_GAIN
+
+    @property
     def is_doubtful(self) -> bool:
         """True where the cloud has just moved and recent walls were unlikely."""
         moved = not self._pending.any()
