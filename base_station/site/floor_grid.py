@@ -119,7 +119,7 @@ class FloorGrid:
         least: float,
         logs: Floats,
     ) -> None:
-        """Trace heads (n, 5) back over a path (k, 4) walked on one floor: ``crossings_backward`` in
+        """Trace heads (n, 5) back over a path (k, 5) walked on one floor: ``crossings_backward`` in
         metres. A floor that is not known has no walls.
         """
         corner = np.array([self._north_m, self._east_m])
@@ -127,7 +127,7 @@ class FloorGrid:
         if floor is not None:
             ground, stairs = self._ground.get(floor, ground), self._stairs.get(floor, stairs)
         heads[:, :2] = (heads[:, :2] - corner) / CELL_M
-        squares = path / (CELL_M, CELL_M, 1.0, 1.0)
+        squares = path / (CELL_M, CELL_M, 1.0, 1.0, 1.0)
         room = room_m[0] / CELL_M, room_m[1] / CELL_M
         crossings_backward(
             ground, stairs, heads, squares, costs, SAMPLING_M / CELL_M, room, least, logs

@@ -123,11 +123,11 @@ def crossings_backward(
     (n, 2), logarithms; one whose sum falls below ``least`` stops, others end where the path begins.
 
     A head is row and column, cosine and sine of its own frame's turn, and by how much that grows
-    in a second moving.  ``path`` (k, 4): rows and columns in the own frame, seconds moving, and
-    whether it climbs.  A door that the plan lacks is crossed again on the way out: within
-    ``SAME_WALL`` squares of an earlier crossing the last of the costs is taken.  Every ``room[0]``
-    squares of way the logarithm of the free part of directions within ``room[1]`` squares is added
-    to the second column.
+    in a second moving.  ``path`` (k, 5): rows and columns in the own frame, seconds moving, whether
+    it climbs, and the cost of a step beside a wall, which is taken instead of that in ``costs``.  A
+    door that the plan lacks is crossed again on the way out: within ``SAME_WALL`` squares of an
+    earlier crossing the last of the costs is taken.  Every ``room[0]`` squares of way the logarithm
+    of the free part of directions within ``room[1]`` squares is added to the second column.
     """
     walls = np.empty((MAX_WALLS, 2))
     for one in range(len(heads)):
@@ -137,11 +137,11 @@ def crossings_backward(
         for back in range(len(path)):
             if log < least:
                 break
-            rows, columns, moving_s, climbs = path[len(path) - 1 - back]
+            rows, columns, moving_s, climbs, beside = path[len(path) - 1 - back]
             way_row, way_column = cosine * rows - sine * columns, sine * rows + cosine * columns
             from_row, from_column = row - way_row, column - way_column
             most = crossing(ground, from_row, from_column, way_row, way_column, sampling)
-            cost = costs[most]
+            cost = beside if most == BESIDE else costs[most]
             if most == WALL:
                 for last in range(met):
                     apart_rows, apart_columns = walls[last, 0] - row, walls[last, 1] - column

@@ -26,7 +26,7 @@ from base_station.fusion.horizontal.particles import PARTICLES, Particles, Saved
 from base_station.fusion.horizontal.resampling import normalised
 from base_station.fusion.horizontal.reseeding import Reseeding, log_density_ratio, reseed
 from base_station.fusion.kernels import STATES
-from base_station.fusion.wall_likelihood import CLIMBS, UNSEEN_M
+from base_station.fusion.wall_likelihood import CLIMBS, UNSEEN_M, log_beside_wall
 from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
@@ -130,11 +130,15 @@ class MapParticleFilter:
         self._pending[:] = 0.0
         from_m = self._particles.predict(north_m, east_m, moving_s, noise)
         checked_floor, log_likelihood, climbs = None, 0.0, abs(climbed_m) > CLIMBS * way_m
+        log_beside = 0.0
         if floor is not None and grid.has_floor(floor) and way_m < UNSEEN_M:
             checked_floor = floor
-            log_likelihood = self._weight_by_walls(grid, floor, from_m, climbs=climbs)
+            log_beside = float(log_beside_wall(np.array(noise[0] * way_m)))
+            log_likelihood = self._weight_by_walls(
+                grid, floor, from_m, climbs=climbs, log_beside=log_beside
+            )
         self._window.append(
-            MotionStep(north_m, east_m, moving_s, climbs, checked_floor, log_likelihood)
+            MotionStep(north_m, east_m, moving_s, climbs, checked_floor, log_likelihood, log_beside)
         )
         self._to_relocalise_m -= way_m
         self._update_is_split()
@@ -217,11 +221,13 @@ class MapParticleFilter:
         self._particles.decay_slow_errors(keeps)
 
     def _weight_by_walls(
-        self, grid: FloorGrid, floor: int, from_m: Floats, *, climbs: bool
+        self, grid: FloorGrid, floor: int, from_m: Floats, *, climbs: bool, log_beside: float
     ) -> float:
         """Weight particles by the walls they crossed; returns the log likelihood of the step."""
         particles, before = self._particles, self._particles.weights
-        crossed, met = wall_likelihood(particles, grid, floor, from_m, climbs=climbs)
+        crossed, met = wall_likelihood(
+            particles, grid, floor, from_m, climbs=climbs, log_beside=log_beside
+        )
         passed = float(before @ np.exp(crossed))
         self._contradiction += CONTRADICTION_GAIN * (-math.log(passed) - self._contradiction)
         particles.reweight(particles.log_weights + met)

@@ -24,10 +24,10 @@ Floats = NDArray[np.float64]
 KEPT_M = 30.0  # of path
 LEG_M = 3.0  # walked until the wearer might have turned
 REACH_M = 1.5  # and gone so far
-# By kind of square, and of a climb beside stairs.
+# By kind of square, and of a climb beside stairs. What room beside walls costs depends on the step.
 COSTS = (
     0.0,
-    math.log(BESIDE_WALL),
+    0.0,
     math.log(THROUGH_WALL),
     math.log(OFF_FLOOR),
     math.log(OFF_STAIRS),
@@ -44,6 +44,7 @@ class MotionStep(msgspec.Struct, frozen=True, array_like=True):
     climbs: bool
     floor: int | None  # None: its walls were not looked at
     log_likelihood: float  # log likelihood of the walls met, by the cloud at the time
+    log_beside: float = math.log(BESIDE_WALL)  # of a particle that passes beside a wall
 
 
 class MotionWindow:
@@ -103,7 +104,9 @@ class MotionWindow:
             (particles[:, :2], scale * np.cos(turn), scale * np.sin(turn), particles[:, 3])
         )
         for floor, moves in _by_floor(self._moves):
-            path = np.array([(m.north_m, m.east_m, m.moving_s, m.climbs) for m in moves])
+            path = np.array(
+                [(m.north_m, m.east_m, m.moving_s, m.climbs, m.log_beside) for m in moves]
+            )
             grid.trace_back(floor, heads, path, (*COSTS, again), (segment_m, REACH_M), least, logs)
         return logs
 

@@ -13,7 +13,6 @@ from base_station.fusion.horizontal.particles import Particles
 from base_station.fusion.horizontal.resampling import JITTER_M, mahalanobis2
 from base_station.fusion.horizontal.state import SCALE
 from base_station.fusion.wall_likelihood import (
-    BESIDE_WALL,
     OFF_FLOOR,
     OFF_STAIRS,
     THROUGH_WALL,
@@ -32,15 +31,23 @@ class WallLikelihood(NamedTuple):
 
 
 def wall_likelihood(
-    particles: Particles, grid: FloorGrid, floor: int, from_m: Floats, *, climbs: bool
+    particles: Particles,
+    grid: FloorGrid,
+    floor: int,
+    from_m: Floats,
+    *,
+    climbs: bool,
+    log_beside: float,
 ) -> WallLikelihood:
-    """Likelihood of the walls met between the places (n, 2) before and now."""
+    """Likelihood of the walls met between the places (n, 2) before and now; ``log_beside``: log
+    likelihood of a step beside a wall.
+    """
     to_m = particles.states[:, :2]
     met = grid.crossings(floor, from_m, to_m)
     crossed = math.log(THROUGH_WALL) * (met == WALL) + math.log(OFF_FLOOR) * (met == OUTSIDE)
     if climbs and grid.has_stairs(floor):
         crossed = crossed + math.log(OFF_STAIRS) * ~grid.on_stairs(floor, to_m)
-    return WallLikelihood(crossed, crossed + math.log(BESIDE_WALL) * (met == BESIDE))
+    return WallLikelihood(crossed, crossed + log_beside * (met == BESIDE))
 
 
 class Innovations(NamedTuple):

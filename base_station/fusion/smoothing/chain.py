@@ -53,6 +53,7 @@ class Chain:
     own_m: Floats  # (k, 2)
     step_m: Floats  # (k - 1, 2) own path between knots; nothing where it does not join
     step_var_m2: Floats  # (k - 1,)
+    place_var_m2: Floats  # (n - 1,) random walk of each step of the path, each axis
     turn_var: Floats  # (k - 1,)
     moving_s: Floats  # (k - 1,)
     restarts: NDArray[np.bool_]  # (k,) a new own frame begins at this knot
@@ -86,6 +87,7 @@ class Chain:
             own_m=path.own_m[knots],
             step_m=_sums(steps, begins),
             step_var_m2=_sums(place_var, begins),
+            place_var_m2=place_var,
             turn_var=_sums(turn_var, begins),
             moving_s=_sums(path.moving_s[1:], begins),
             restarts=restarts,

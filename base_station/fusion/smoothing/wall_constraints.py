@@ -23,12 +23,12 @@ from base_station.fusion.odometry.points import BREAK, RESTART
 from base_station.fusion.smoothing.chain import STATES, Chain, PathEstimate, place_of
 from base_station.fusion.smoothing.equations import Equations
 from base_station.fusion.wall_likelihood import (
-    BESIDE_WALL,
     CLIMBS,
     OFF_FLOOR,
     OFF_STAIRS,
     THROUGH_WALL,
     UNSEEN_M,
+    log_beside_wall,
 )
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, OUTSIDE, WALL
@@ -66,6 +66,7 @@ class WallSegments:
     to_m: Floats
     floor: Ints  # (s,)
     climbs: NDArray[np.bool_]  # (s,)
+    log_beside: Floats  # (s,) log likelihood of each step beside a wall
 
     @staticmethod
     def of(chain: Chain, grid: FloorGrid) -> WallSegments:
@@ -90,6 +91,7 @@ class WallSegments:
             to_m=path.own_m[1:][use] - middles[segment],
             floor=floors[use],
             climbs=(rise > CLIMBS * way)[use],
+            log_beside=log_beside_wall(chain.place_var_m2[use]),
         )
 
     def __len__(self) -> int:
@@ -108,7 +110,7 @@ class WallSegments:
             met = self.grid.crossings_shifted(floor, from_m[on], to_m[on], middles)
             logs += math.log(THROUGH_WALL) * self._steps_of(on, met == WALL)
             logs += math.log(OFF_FLOOR) * self._steps_of(on, met == OUTSIDE)
-            room += math.log(BESIDE_WALL) * self._steps_of(on, met == BESIDE)
+            room += self._steps_of(on, self.log_beside[on, None] * (met == BESIDE))
             up = on[self.climbs[on]]
             if len(up) and self.grid.has_stairs(floor):
                 ends = (place_m[self.segment[up]] + to_m[up][:, None]).reshape(-1, 2)
@@ -116,12 +118,12 @@ class WallSegments:
                 logs += math.log(OFF_STAIRS) * self._steps_of(up, off)
         return logs, room
 
-    def _steps_of(self, steps: Ints, flags: NDArray[np.bool_]) -> Floats:
-        """Number of each segment's ``steps`` (n,) with their flags (n, g) set: (p, g)."""
+    def _steps_of(self, steps: Ints, values: Floats | NDArray[np.bool_]) -> Floats:
+        """Sums (p, g) of values or flags (n, g) over each segment's ``steps`` (n,)."""
         segments, first = np.unique(self.segment[steps], return_index=True)
-        counts = np.zeros((len(self), flags.shape[1]))
-        counts[segments] = np.add.reduceat(flags, first, axis=0, dtype=np.float64)
-        return counts
+        sums = np.zeros((len(self), values.shape[1]))
+        sums[segments] = np.add.reduceat(values, first, axis=0, dtype=np.float64)
+        return sums
 
 
 class WallMessages:

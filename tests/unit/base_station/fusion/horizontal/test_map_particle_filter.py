@@ -13,6 +13,7 @@ from tests.rig.walled_plan import walled_grid
 
 CORRIDOR_M, LONG_M = 2.0, 30.0
 NOISE = 0.03**2, 0.004**2
+HAND_NOISE = 0.28**2, 0.014**2
 SCALE_STD = 0.015
 
 
@@ -23,7 +24,9 @@ def corridor() -> FloorGrid:
     return walled_grid(ring, lines)
 
 
-def walked_north(east_m: float, std_m: float) -> MapParticleFilter:
+def walked_north(
+    east_m: float, std_m: float, noise: tuple[float, float] = NOISE
+) -> MapParticleFilter:
     """Fifteen metres along the corridor, from the assumed start."""
     mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
     mean[[0, 1, 2]] = 5.0, east_m, 1.0
@@ -32,7 +35,7 @@ def walked_north(east_m: float, std_m: float) -> MapParticleFilter:
     covariance[[3, 4, 5, 6, 7], [3, 4, 5, 6, 7]] = 0.01**2, 1.0, 1.0, 1.0, 1.0
     cloud, grid = MapParticleFilter(mean, covariance, 1), corridor()
     for _ in range(30):
-        cloud.predict((0.5, 0.0, 0.5, 0.0), NOISE, grid, 0)
+        cloud.predict((0.5, 0.0, 0.5, 0.0), noise, grid, 0)
     return cloud
 
 
@@ -45,3 +48,10 @@ def test_particles_keep_half_a_body_width_from_a_wall() -> None:
 
 def test_path_close_to_a_wall_is_no_evidence_against_the_plan() -> None:
     assert not walked_north(0.1, 0.05).is_contradicted
+
+
+def test_place_beside_a_wall_costs_a_noisy_path_less() -> None:
+    foot, hand = walked_north(0.15, 0.02), walked_north(0.15, 0.02, HAND_NOISE)
+    first = [cloud.save().window[0].log_beside for cloud in (foot, hand)]
+    assert math.exp(first[0]) < 0.56
+    assert math.exp(first[1]) > 0.75

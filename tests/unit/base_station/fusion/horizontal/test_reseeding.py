@@ -30,7 +30,7 @@ from base_station.fusion.kernels import STATES, HorizontalEstimate
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.position_quality import quality_of
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.wall_crossing import WALL
+from base_station.site.wall_crossing import BESIDE, WALL
 from shared.quality import Quality
 from tests.rig.walled_plan import walled_grid
 
@@ -193,6 +193,8 @@ def test_way_back_crosses_the_same_walls_as_the_way_there() -> None:
     grid, rng = building(*DOOR_M), np.random.default_rng(3)
     begin = draw(*known(np.array(BEGIN_M), 1.0), rng, np.ones(50)).particles
     particles, last, logs = begin.copy(), MotionWindow([]), np.zeros(50)
+    costs = np.array(COSTS)
+    costs[BESIDE] = -0.3  # of these steps
     for direction in WALK[:50]:
         step_m = STEP_M * np.array(direction)
         particles[:, 2] += particles[:, 3] * 0.5
@@ -201,15 +203,15 @@ def test_way_back_crosses_the_same_walls_as_the_way_there() -> None:
         from_m = particles[:, :2].copy()
         particles[:, 0] += cosine * step_m[0] - sine * step_m[1]
         particles[:, 1] += sine * step_m[0] + cosine * step_m[1]
-        logs += np.array(COSTS)[grid.crossings(0, from_m, particles[:, :2])]
+        logs += costs[grid.crossings(0, from_m, particles[:, :2])]
         north_m, east_m = step_m.tolist()
-        last.append(MotionStep(north_m, east_m, 0.5, False, 0, 0.0))
+        last.append(MotionStep(north_m, east_m, 0.5, False, 0, 0.0, costs[BESIDE]))
     back = last.wall_log_likelihood(particles, grid, -math.inf) + last.repeated_wall_log_ratio(
         particles, grid
     )
     assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # except squares that a rounding misses
     assert (logs < COSTS[WALL]).any()
-    assert (logs > COSTS[WALL]).any()
+    assert ((logs > COSTS[WALL]) & (logs < 0.0)).any()
 
 
 def test_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:

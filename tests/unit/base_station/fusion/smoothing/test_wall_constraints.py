@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from base_station.fusion.interface import Estimate, Start
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.smoothing import SMOOTHERS
+from base_station.fusion.smoothing.chain import Chain, WalkNoise
 from base_station.fusion.smoothing.common_errors import START_PART
 from base_station.fusion.smoothing.interface import (
     PositionConstraint,
@@ -21,6 +22,7 @@ from base_station.fusion.smoothing.interface import (
     Smoother,
     UnitEvidence,
 )
+from base_station.fusion.smoothing.wall_constraints import WallSegments
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.wall_crossing import BESIDE, FREE, WALL
 from shared.clock import NS_PER_S
@@ -143,6 +145,18 @@ def test_live_estimates_stay_where_a_path_is_known_no_better_than_a_room(
     assert errors_of(walled, truth).mean() > 1.5
     assert errors_of(held, truth).mean() < 1.0
     assert np.hypot(held.std_north_m, held.std_east_m).min() > 0.5
+
+
+def test_room_beside_walls_counts_less_on_a_noisy_path() -> None:
+    history, _ = rounds(0.0, lasts_s=60)
+    likelihood = {}
+    for worn, noise in (("foot", None), ("hand", PathNoise(0.08, 0.28, 0.014))):
+        evidence = UnitEvidence(history.arrays(), START, path_noise=noise)
+        chain = Chain.of(evidence, WalkNoise(), knot_m=4.0, knot_s=30.0)
+        likelihood[worn] = np.exp(WallSegments.of(chain, corridor()).log_beside)
+    assert len(likelihood["foot"]) == len(likelihood["hand"]) >= 20
+    assert likelihood["foot"].max() < 0.6
+    assert likelihood["hand"].min() > 0.8
 
 
 def test_pins_show_the_offset_of_a_plan(smoother: Smoother) -> None:
