@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import msgspec
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
@@ -46,6 +49,32 @@ def test_casualty_shows_its_cause_and_place(stage: Stage) -> None:
     expect(casualties(page)).to_have_count(1)
     expect(casualties(page)).to_contain_text("Jonas Bergman")
     expect(casualties(page)).to_contain_text("floor 1 · Fall, No motion")
+
+
+@pytest.mark.parametrize("size", [SIZES[3], (1280, 800)])
+def test_cause_is_read_whole(stage: Stage, tmp_path: Path, size: tuple[int, int]) -> None:
+    shown = scenes.some_down(40, DOWN)
+    more = [
+        scenes.alarm(index, rule, 1, f"{rule} of a member", 20 + index)
+        for index in range(2)
+        for rule in ("mayday", "no-motion")
+    ]
+    alarms = (*shown.alarms, *more)
+    units = tuple(
+        scenes.with_alarms(one, *(each for each in alarms if each.unit_id == one.unit_id))
+        for one in shown.units
+    )
+    page, _ = stage.open(msgspec.structs.replace(shown, units=units, alarms=alarms))
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    longest = casualties(page).filter(has_text=scenes.person(0).name)
+    words = longest.locator(".casualty-words")
+    expect(words).to_contain_text("Mayday")
+    expect(words).to_contain_text("Fall")
+    page.screenshot(path=tmp_path / f"causes-{size[0]}.png")
+    for one in casualties(page).locator(".casualty-words").all():
+        assert one.evaluate("one => one.scrollWidth <= one.clientWidth")
+        assert one.evaluate("one => getComputedStyle(one).textOverflow") == "clip"
+    assert flaws(page) == []
 
 
 def test_overdue_member_is_no_casualty(stage: Stage) -> None:
