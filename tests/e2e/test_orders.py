@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -141,6 +142,37 @@ def test_order_names_the_members_reachable_by_radio_only(stage: Stage, order: st
     expect(reported).to_have_text("1 of 1 cannot be notified: use the voice radio: Mira Okafor")
     dialog.get_by_label("To").select_option(label="Jonas Bergman")
     expect(reported).to_have_text("")
+
+
+def test_many_members_reachable_by_radio_only_are_folded(stage: Stage, tmp_path: Path) -> None:
+    shown = scenes.some_down(40, 1)
+    units = tuple(
+        msgspec.structs.replace(one, can_be_notified=place < 2)
+        for place, one in enumerate(shown.units)
+    )
+    page, _ = stage.open(msgspec.structs.replace(shown, units=units))
+    dialog = command(page, "Evacuate")
+    summary = dialog.get_by_text("38 of 40 cannot be notified: use the voice radio", exact=True)
+    name = dialog.locator(".not-notifiable").get_by_text("Jonas Bergman")
+    expect(summary).to_be_visible()
+    expect(name).to_be_hidden()
+    page.screenshot(path=tmp_path / "folded.png")
+    summary.click()
+    expect(name).to_be_visible()
+    page.screenshot(path=tmp_path / "unfolded.png")
+    assert flaws(page) == []
+    assert barriers(page) == []
+
+
+def test_card_shows_one_state_of_the_par(stage: Stage, tmp_path: Path) -> None:
+    """That of its mark, not also that of the delivery of a request, which may be an earlier one."""
+    par = scenes.order("c1", "par_request", ACKNOWLEDGED)
+    evacuation = scenes.order("c2", "evacuate", ACKNOWLEDGED)
+    page, _ = stage.open(with_orders(par, evacuation, shown=scenes.par_requested()))
+    card = page.locator(".card", has_text="Astrid Lindqvist")
+    expect(card).to_contain_text("PAR requested")
+    expect(card.locator(".card-commands")).to_have_text("Evacuateacknowledged")
+    page.screenshot(path=tmp_path / "par.png")
 
 
 def test_card_shows_a_wearer_who_cannot_be_notified(stage: Stage) -> None:

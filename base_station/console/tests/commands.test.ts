@@ -159,20 +159,24 @@ describe("commands", () => {
       { ...inCrew("c", "Blue"), ...none },
       inCrew("d", "Blue"),
     ];
-    expect(notNotifiable({ everyone: true }, units)).toBe(
-      "2 of 4 cannot be notified: use the voice radio: a, c",
-    );
-    expect(notNotifiable({ crew: "Red" }, units)).toBe(
-      "1 of 2 cannot be notified: use the voice radio: a",
-    );
-    expect(notNotifiable({ unit_id: "c" }, units)).toBe(
-      "1 of 1 cannot be notified: use the voice radio: c",
-    );
-    expect(notNotifiable({ everyone: true }, [units[0]!, units[2]!])).toBe(
-      "2 of 2 cannot be notified: use the voice radio",
-    );
-    expect(notNotifiable({ unit_id: "d" }, units)).toBe("");
-    expect(notNotifiable({ unit_id: "b" }, units)).toBe("");
+    expect(notNotifiable({ everyone: true }, units)).toEqual({
+      words: "2 of 4 cannot be notified: use the voice radio",
+      names: ["a", "c"],
+    });
+    expect(notNotifiable({ crew: "Red" }, units)).toEqual({
+      words: "1 of 2 cannot be notified: use the voice radio",
+      names: ["a"],
+    });
+    expect(notNotifiable({ unit_id: "c" }, units)).toEqual({
+      words: "1 of 1 cannot be notified: use the voice radio",
+      names: ["c"],
+    });
+    expect(notNotifiable({ everyone: true }, [units[0]!, units[2]!])).toEqual({
+      words: "2 of 2 cannot be notified: use the voice radio",
+      names: [],
+    });
+    expect(notNotifiable({ unit_id: "d" }, units)).toBeNull();
+    expect(notNotifiable({ unit_id: "b" }, units)).toBeNull();
   });
 
   it("names each crew once, and nobody without one", () => {

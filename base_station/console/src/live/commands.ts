@@ -1,7 +1,7 @@
 /** Commands to units, for display.  Pure. */
 import type { CommandView, DeliveryState, DeliveryView, IncidentView, UnitView } from "../wire";
 import { clockTime } from "../format";
-import { listed } from "../language/measures";
+import { compareNames } from "../language/measures";
 import { label, t } from "../language/translate";
 import { nameAmong } from "./urgency";
 
@@ -118,7 +118,7 @@ export function mayAnswerByRadio(command: CommandView, delivery: DeliveryView): 
 /** Crews with members on duty. */
 export function crewsOf(units: Iterable<UnitView>): string[] {
   const crews = [...units].map((unit) => unit.person?.crew ?? "");
-  return [...new Set(crews)].filter((crew) => crew !== "").sort();
+  return [...new Set(crews)].filter((crew) => crew !== "").sort(compareNames);
 }
 
 export type Target = { everyone: true } | { crew: string } | { floor: number } | { unit_id: string };
@@ -146,16 +146,15 @@ export function floorsOf(units: Iterable<UnitView>): number[] {
   return [...new Set(floors)].filter((floor) => floor !== null).sort((a, b) => b - a);
 }
 
-/** "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Jonas Bergman"; without names if it
- * is all of several; empty: as far as is known, all can be notified. */
-export function notNotifiable(target: Target, units: readonly UnitView[]): string {
+/** "2 of 5 cannot be notified: use the voice radio", and their names; no names if it is all of several;
+ * null: as far as is known, all can be notified. */
+export function notNotifiable(target: Target, units: readonly UnitView[]): { words: string; names: string[] } | null {
   const all = recipients(target, units);
   const cannot = all.filter((unit) => unit.can_be_notified === false);
-  if (cannot.length === 0) return "";
+  if (cannot.length === 0) return null;
   const words = t("order.cannot", { count: cannot.length, all: all.length });
-  if (cannot.length === all.length && all.length > 1) return words;
-  const names = listed(cannot.map((unit) => nameAmong(unit, units)));
-  return t("order.cannot_names", { cannot: words, names });
+  const isAll = cannot.length === all.length && all.length > 1;
+  return { words, names: isAll ? [] : cannot.map((unit) => nameAmong(unit, units)) };
 }
 
 export function kindWord(kind: string): string {

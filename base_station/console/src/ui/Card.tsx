@@ -100,7 +100,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
       {unit.cloned && <TwoMachines />}
       {unit.registered && unit.can_be_notified === false && <NotNotifiable />}
       <NotReady unit={unit} chosen={chosen} />
-      <OpenCommands unitId={unitId} picture={picture} chosen={chosen} />
+      <OpenCommands unit={unit} picture={picture} chosen={chosen} />
       {short ? (
         <BriefFacts unit={unit} picture={picture} />
       ) : (

@@ -12,7 +12,7 @@ import {
   stands,
   type Target,
 } from "../live/commands";
-import { locale } from "../language/measures";
+import { compareNames, listed, locale } from "../language/measures";
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import type { CommandView } from "../wire";
@@ -140,11 +140,29 @@ function CommandForm({ kind, picture, sent }: FormProps) {
         {t(kind === "evacuate" ? "order.evacuate_now" : "order.send")}
       </button>
       {/* Below the button, which many names would push out of sight. */}
-      <p class="not-notifiable" aria-live="polite">
-        {unreachable !== "" && <Icon name="bellOff" />}
-        {unreachable}
-      </p>
+      <div class="not-notifiable" aria-live="polite">
+        {unreachable !== null && (
+          <>
+            <Icon name="bellOff" />
+            <Unreachable {...unreachable} />
+          </>
+        )}
+      </div>
     </form>
+  );
+}
+
+/** Above this number their names are folded. */
+const MANY = 6;
+
+function Unreachable({ words, names }: { words: string; names: readonly string[] }) {
+  if (names.length === 0) return <span>{words}</span>;
+  if (names.length <= MANY) return <span>{t("order.cannot_names", { cannot: words, names: listed(names) })}</span>;
+  return (
+    <details>
+      <summary>{words}</summary>
+      <p>{listed([...names].sort(compareNames))}</p>
+    </details>
   );
 }
 

@@ -10,6 +10,7 @@ import {
   type UnitCommand,
 } from "../live/commands";
 import type { Picture } from "../live/picture";
+import type { UnitView } from "../wire";
 import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
@@ -37,16 +38,18 @@ export function CommandState({ command, delivery }: UnitCommand) {
 }
 
 interface Props {
-  unitId: string;
+  unit: UnitView;
   picture: Picture;
   chosen: boolean;
 }
 
 /** On a member's card: the open orders to the member; on the chosen one also the state of the last locate
- * order. */
-export function OpenCommands({ unitId, picture, chosen }: Props) {
+ * order.  A PAR has its own mark, which also says what became of it. */
+export function OpenCommands({ unit, picture, chosen }: Props) {
+  const unitId = unit.unit_id;
   const commands = current(picture.commands.value.values(), picture.incident.value);
-  const open = openTo(unitId, newestFirst(commands));
+  const hasMark = unit.duty !== null;
+  const open = openTo(unitId, newestFirst(commands)).filter(({ command }) => !(hasMark && command.kind === "par_request"));
   const located = chosen ? lastLocate(unitId, commands) : null;
   if (located !== null && !located.command.open) open.push(located);
   if (open.length === 0) return null;
