@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import msgspec
-from playwright.sync_api import expect
+import pytest
+from playwright.sync_api import Locator, expect
 
 from base_station.views.wire import AnchorView
 from tests.e2e import scenes
@@ -49,6 +50,50 @@ def test_first_place_of_a_plan_is_set_without_confirmation(stage: Stage) -> None
     for name in ("Latitude", "Longitude"):
         site.get_by_label(name).fill("11.5")
     site.get_by_role("button", name="Save location").click()
+    expect(site).to_have_count(0)
+    station.expect_changes("/site/anchor")
+
+
+def paste(field: Locator, text: str) -> None:
+    field.evaluate(
+        """(field, text) => {
+            const clipboardData = new DataTransfer();
+            clipboardData.setData("text/plain", text);
+            field.dispatchEvent(new ClipboardEvent("paste", { clipboardData, cancelable: true }));
+        }""",
+        text,
+    )
+
+
+@pytest.mark.parametrize("pair", ["57.7, 11.9", "57,7; 11,9"])
+def test_pair_of_coordinates_is_pasted_into_one_field(stage: Stage, pair: str) -> None:
+    page, station = stage.open(scenes.quiet())
+    site = menu(page, "Site")
+    paste(site.get_by_label("Latitude"), pair)
+    expect(site.get_by_label("Latitude")).to_have_value("57.7")
+    expect(site.get_by_label("Longitude")).to_have_value("11.9")
+    with page.expect_request("**/site/anchor*") as sent:
+        site.get_by_role("button", name="Save location").click()
+    body = sent.value.post_data_json or {}
+    assert (body["lat_deg"], body["lon_deg"]) == (57.7, 11.9)
+    station.expect_changes("/site/anchor")
+
+
+def test_text_that_is_no_coordinate_is_named_and_not_sent(stage: Stage, tmp_path: Path) -> None:
+    page, station = stage.open(scenes.quiet())
+    site = menu(page, "Site")
+    latitude = site.get_by_label("Latitude")
+    latitude.fill("Mill Road 7")
+    site.get_by_label("Longitude").fill("11,9")
+    reason = site.get_by_role("alert").filter(has_text="This is no latitude or longitude")
+    expect(reason).to_be_visible()
+    page.screenshot(path=tmp_path / "bad.png")
+    assert flaws(page) == []
+    site.get_by_role("button", name="Save location").click()
+    station.expect_changes()
+    latitude.fill("57,7")
+    latitude.press("Enter")
+    expect(reason).to_have_count(0)
     expect(site).to_have_count(0)
     station.expect_changes("/site/anchor")
 

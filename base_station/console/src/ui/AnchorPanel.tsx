@@ -9,6 +9,7 @@ import { clicked, putDown, type Place } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { place as inWords } from "../format";
 import { t } from "../language/translate";
+import { CoordinateFields, coordinatesOf } from "./CoordinateFields";
 import { PanelActions } from "./PanelActions";
 import { MapPicker } from "./MapPicker";
 import { ReplacePlace } from "./ReplacePlace";
@@ -79,46 +80,16 @@ interface PointProps {
 }
 
 function Point({ name, label, place, at }: PointProps) {
-  const [lat, lon] = (at ?? []).map((degrees) => degrees.toFixed(7));
   return (
     <fieldset class="place">
       <legend>
         {t("anchor.point", { point: label, where: place === undefined ? t("anchor.click") : inWords(place) })}
       </legend>
-      <label>
-        {t("anchor.latitude")}
-        <input
-          key={lat}
-          name={`${name}-lat`}
-          type="number"
-          step="any"
-          min={-90}
-          max={90}
-          defaultValue={lat}
-          required
-        />
-      </label>
-      <label>
-        {t("anchor.longitude")}
-        <input
-          key={lon}
-          name={`${name}-lon`}
-          type="number"
-          step="any"
-          min={-180}
-          max={180}
-          defaultValue={lon}
-          required
-        />
-      </label>
+      <CoordinateFields label={t("anchor.latitude")} prefix={`${name}-`} at={at} />
     </fieldset>
   );
 }
 
 function known(given: Record<string, string>, name: string, place: Place): Known {
-  return {
-    place,
-    lat_deg: Number(given[`${name}-lat`]),
-    lon_deg: Number(given[`${name}-lon`]),
-  };
+  return { place, ...coordinatesOf(given, `${name}-`) };
 }

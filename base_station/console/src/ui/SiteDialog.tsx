@@ -7,6 +7,7 @@ import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { t } from "../language/translate";
 import { BaseMapForm } from "./BaseMapForm";
+import { CoordinateFields, coordinatesOf } from "./CoordinateFields";
 import { useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
 import { PlanForm } from "./PlanForm";
@@ -62,8 +63,7 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
           ? t("site.nowhere")
           : t("site.at", { place: placeWords(anchor) })}
       </p>
-      <NumberField name="lat" label={t("site.latitude")} value={anchor?.lat_deg} />
-      <NumberField name="lon" label={t("site.longitude")} value={anchor?.lon_deg} />
+      <CoordinateFields label={t("site.latitude")} at={anchor === null ? undefined : [anchor.lat_deg, anchor.lon_deg]} />
       <NumberField name="height" label={t("site.height")} value={anchor?.height_m ?? 0} />
       <NumberField
         name="turn"
@@ -84,8 +84,7 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
 function anchorOf(given: Record<string, string>): AnchorView {
   const number = (name: string) => Number(given[name]);
   return {
-    lat_deg: number("lat"),
-    lon_deg: number("lon"),
+    ...coordinatesOf(given),
     height_m: number("height"),
     plan_rotation_rad: number("turn") / DEGREES,
   };

@@ -106,6 +106,8 @@ export const site: Part<"site"> = {
   by_fix: "Ohne Plan genügt die erste gute Satellitenortung eines Geräts.",
   nowhere: "Die Lage des Plans ist nicht bekannt.",
   at: "Der Nullpunkt des Plans liegt bei {place}.",
+  bad_coordinate:
+    "Das ist keine Breite oder Länge in Grad: als 57,7012 und 11,9021 schreiben, oder beide einfügen: „57,7012; 11,9021“.",
   latitude: "Breite des Nullpunkts, °",
   longitude: "Länge, °",
   height: "Höhe, m",

@@ -8,7 +8,6 @@ export const anchor: Part<"anchor"> = {
   point: "{point}: {where}",
   click: "auf den Plan klicken",
   latitude: "Breite, °",
-  longitude: "Länge, °",
   hint: "Nehmen Sie zwei weit entfernte Ecken. Eine Karte oder ein GPS-Empfänger sagt, wo sie sind.",
   hint_map:
     "Nehmen Sie zwei weit entfernte Ecken. Klicken Sie dieselben zwei in derselben Reihenfolge auf dem Plan und auf der Karte an.",

@@ -105,6 +105,8 @@ export const site = {
   by_fix: "Without a plan, the first good fix of a unit does it.",
   nowhere: "The location of the plan is not known.",
   at: "The plan’s origin lies at {place}.",
+  bad_coordinate:
+    "This is no latitude or longitude in degrees: write them as 57.7012 and 11.9021, or paste both, “57.7012, 11.9021”.",
   latitude: "Latitude of the plan’s origin, °",
   longitude: "Longitude, °",
   height: "Height, m",

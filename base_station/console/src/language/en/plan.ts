@@ -7,7 +7,6 @@ export const anchor = {
   point: "{point}: {where}",
   click: "click on the plan",
   latitude: "Latitude, °",
-  longitude: "Longitude, °",
   hint: "Take two corners far apart. A map or a GPS receiver tells where they are.",
   hint_map: "Take two corners far apart. Click the same two, in the same order, on the plan and on the map.",
   save: "Save location",

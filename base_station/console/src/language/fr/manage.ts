@@ -106,6 +106,8 @@ export const site: Part<"site"> = {
   by_fix: "Sans plan, la première bonne position satellite d’un boîtier suffit.",
   nowhere: "L’emplacement du plan n’est pas connu.",
   at: "L’origine du plan est à {place}.",
+  bad_coordinate:
+    "Ce n’est pas une latitude ou longitude en degrés\u00a0: les écrire 57,7012 et 11,9021, ou coller les deux\u00a0: «\u00a057,7012\u00a0; 11,9021\u00a0».",
   latitude: "Latitude de l’origine, °",
   longitude: "Longitude, °",
   height: "Altitude, m",

@@ -8,7 +8,6 @@ export const anchor: Part<"anchor"> = {
   point: "{point}\u00a0: {where}",
   click: "cliquer sur le plan",
   latitude: "Latitude, °",
-  longitude: "Longitude, °",
   hint: "Prenez deux angles éloignés. Une carte ou un récepteur GPS indique où ils sont.",
   hint_map:
     "Prenez deux angles éloignés. Cliquez les deux mêmes, dans le même ordre, sur le plan et sur la carte.",
