@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -278,3 +279,28 @@ def test_forced_colours_show_the_choice_and_danger(stage: Stage) -> None:
     cards, rows = page.locator(".card"), strip(page).get_by_role("listitem")
     for danger, other in ((cards.first, cards.nth(1)), (rows.first, rows.last)):
         assert danger.evaluate(border) != other.evaluate(border)
+
+
+@pytest.mark.parametrize(
+    ("language", "hatching"),
+    [("en", "Hatched, dashed"), ("de", "Schraffiert, gestrichelt"), ("fr", "Hachures, tirets")],
+)
+def test_legend_draws_the_marks_of_the_plan(
+    stage: Stage, tmp_path: Path, language: str, hatching: str
+) -> None:
+    page, _ = stage.open(scenes.quiet(), kept={"muster-language": language})
+    page.keyboard.press("?")
+    dialog = page.get_by_role("dialog")
+    marks = dialog.locator(".plan-marks")
+    expect(marks.get_by_role("listitem")).to_have_count(0)  # folded until it is asked for
+    marks.locator("summary").click()
+    expect(marks.get_by_role("listitem").filter(has_text=hatching)).to_be_visible()
+    drawn = marks.locator("canvas").evaluate_all(
+        """canvases => canvases.map((one) =>
+            one.getContext("2d").getImageData(0, 0, one.width, one.height).data.some(Boolean))"""
+    )
+    assert len(drawn) == marks.get_by_role("listitem").count()
+    assert all(drawn)
+    assert barriers(page) == []
+    assert on_every_screen(page, flaws) == {}
+    marks.screenshot(path=tmp_path / f"legend-{language}.png")

@@ -132,7 +132,7 @@ export class PinLayer {
       new Style({
         zIndex: chosen ? 3 : 1,
         renderer: (where, state) =>
-          drawPin(where as number[], state, pin.state, colour, scene.colours.halo),
+          drawAt(where as number[], state, (context) => drawPin(context, pin.state, colour, scene.colours.halo)),
       }),
     );
     this.source.addFeature(mark);
@@ -225,7 +225,7 @@ function textStyle(
 
 type Context = RenderState["context"];
 
-function at(where: number[], { context, pixelRatio }: RenderState, draw: (c: Context) => void) {
+function drawAt(where: number[], { context, pixelRatio }: RenderState, draw: (c: Context) => void) {
   context.save();
   context.translate(where[0] ?? 0, where[1] ?? 0);
   context.scale(pixelRatio, pixelRatio);
@@ -233,37 +233,30 @@ function at(where: number[], { context, pixelRatio }: RenderState, draw: (c: Con
   context.restore();
 }
 
-/** A pin with a head: full while it is used, hollow while it waits, with "!" where it conflicts. */
-function drawPin(
-  where: number[],
-  state: RenderState,
-  pinState: string,
-  colour: string,
-  halo: string,
-): void {
-  at(where, state, (context) => {
-    context.lineWidth = 2.5;
-    context.strokeStyle = colour;
-    context.beginPath();
-    context.moveTo(0, 0);
-    context.lineTo(0, -STEM_PX + HEAD_PX);
-    context.stroke();
-    context.beginPath();
-    context.arc(0, -STEM_PX, HEAD_PX, 0, 2 * Math.PI);
-    context.fillStyle = pinState === "waiting" ? halo : colour;
-    context.fill();
-    context.stroke();
-    if (pinState !== "conflict") return;
-    context.fillStyle = halo;
-    context.font = "800 11px system-ui, sans-serif";
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.fillText("!", 0, -STEM_PX + 0.5);
-  });
+/** A pin with a head, its place at the origin: full while it is used, hollow while it waits, with "!" where
+ * it conflicts. */
+export function drawPin(context: Context, pinState: string, colour: string, halo: string): void {
+  context.lineWidth = 2.5;
+  context.strokeStyle = colour;
+  context.beginPath();
+  context.moveTo(0, 0);
+  context.lineTo(0, -STEM_PX + HEAD_PX);
+  context.stroke();
+  context.beginPath();
+  context.arc(0, -STEM_PX, HEAD_PX, 0, 2 * Math.PI);
+  context.fillStyle = pinState === "waiting" ? halo : colour;
+  context.fill();
+  context.stroke();
+  if (pinState !== "conflict") return;
+  context.fillStyle = halo;
+  context.font = "800 11px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillText("!", 0, -STEM_PX + 0.5);
 }
 
 function drawDiamond(where: number[], state: RenderState, colour: string, colours: Colours): void {
-  at(where, state, (context) => {
+  drawAt(where, state, (context) => {
     context.rotate(Math.PI / 4);
     context.fillStyle = colour;
     context.strokeStyle = colours.halo;
@@ -274,7 +267,7 @@ function drawDiamond(where: number[], state: RenderState, colour: string, colour
 }
 
 function drawCross(where: number[], state: RenderState, colour: string): void {
-  at(where, state, (context) => {
+  drawAt(where, state, (context) => {
     context.strokeStyle = colour;
     context.lineWidth = 2.5;
     context.beginPath();

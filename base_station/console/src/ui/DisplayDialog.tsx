@@ -1,4 +1,4 @@
-import type { Signal } from "@preact/signals";
+import { useSignal, type Signal } from "@preact/signals";
 import { gloves, shortcutsOn, theme, THEMES, wall } from "../appearance";
 import {
   floorsChoice,
@@ -11,6 +11,7 @@ import { FLOOR_NAMES, UNITS } from "../language/measures";
 import { label, t } from "../language/translate";
 import { canSpeak, speechOn } from "../speech";
 import { Dialog } from "./Dialog";
+import { onDemand } from "./onDemand";
 import { SHORTCUTS } from "./shortcuts";
 
 /** How this console looks, reads and sounds; this browser keeps it. */
@@ -58,6 +59,7 @@ export function DisplayDialog() {
         <legend>{t("display.gloves")}</legend>
         <Switch label={t("display.gloves_use")} choice={gloves} />
       </fieldset>
+      <PlanMarks />
       <fieldset class="choices">
         <legend>{t("display.shortcuts")}</legend>
         <Switch label={t("display.shortcuts_use")} choice={shortcutsOn} />
@@ -81,6 +83,19 @@ export function DisplayDialog() {
         )}
       </fieldset>
     </Dialog>
+  );
+}
+
+const Legend = onDemand(() => import("./Legend").then((part) => part.Legend));
+
+/** Folded: it is long, and looked up once. */
+function PlanMarks() {
+  const isOpen = useSignal(false);
+  return (
+    <details class="plan-marks" onToggle={({ currentTarget }) => (isOpen.value = currentTarget.open)}>
+      <summary>{t("display.plan_marks")}</summary>
+      {isOpen.value && <Legend />}
+    </details>
   );
 }
 

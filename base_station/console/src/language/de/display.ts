@@ -21,6 +21,7 @@ export const display: Part<"display"> = {
   wall_use: "Namen, Zustand und Geschoss, aus 2 m zu lesen",
   gloves: "Handschuhe",
   gloves_use: "Große Schaltflächen (15 mm)",
+  plan_marks: "Zeichen auf dem Plan",
   shortcuts: "Tastenkürzel",
   shortcuts_use: "Verwenden",
   speech: "Gesprochene Alarme",

@@ -20,6 +20,7 @@ export const display = {
   wall_use: "Names, state and floor, to be read from 2 m",
   gloves: "Gloves",
   gloves_use: "Large targets (15 mm)",
+  plan_marks: "Marks on the plan",
   shortcuts: "Keyboard shortcuts",
   shortcuts_use: "Use them",
   speech: "Spoken alarms",

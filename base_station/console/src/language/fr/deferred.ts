@@ -5,6 +5,7 @@ export * from "./dispatch_warnings";
 export * from "./drawing_notes";
 export * from "./field_labels";
 export * from "./import_warnings";
+export * from "./legend";
 export * from "./log_defects";
 export * from "./pin_reasons";
 export * from "./refusals_access";

@@ -21,6 +21,7 @@ export const display: Part<"display"> = {
   wall_use: "Noms, état et étage, lisibles à 2 m",
   gloves: "Gants",
   gloves_use: "Grandes cibles (15 mm)",
+  plan_marks: "Signes sur le plan",
   shortcuts: "Raccourcis clavier",
   shortcuts_use: "Les utiliser",
   speech: "Alarmes parlées",
