@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
@@ -13,10 +14,17 @@ from tests.e2e.enlisting import enlist
 from tests.e2e.stage import Stage
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
+from tests.rig.kept_screenshots import keep_screenshots
 
 UNIT = "FF-07"
 STATION_AWAY = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE")  # not there, or gone before it answered
 expect.set_options(timeout=PATIENCE_MS)
+
+
+@pytest.fixture(autouse=True)
+def kept_screenshots(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[None]:
+    yield
+    keep_screenshots(tmp_path, request.path.stem, request.node.name)
 
 
 @pytest.fixture(scope="module")
