@@ -20,6 +20,10 @@ const compressed: Plugin = {
 
 const MOCKED = "tests/**/*.mocked.test.ts";
 
+/** Parts that the page shares with what is fetched later.  Each would be a file of its own, whose headers take
+ * more bytes than its content. */
+const SMALL_PARTS = /src\/(ui\/(Columns|Photo|Waiting|useGuardedPress|useLoaded)|plan\/contents|timeline\/series)\.tsx?$/;
+
 // `npm run dev` talks to a station on its usual port; the built console is served by the station.
 export default defineConfig({
   base: "/",
@@ -30,7 +34,15 @@ export default defineConfig({
     assetsInlineLimit: 0, // a data: address would need a wider content policy
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 600,
-    rolldownOptions: { input: ["index.html", "department.html"] }, // of a station, of a department
+    rolldownOptions: {
+      input: ["index.html", "department.html"], // of a station, of a department
+      output: {
+        codeSplitting: {
+          includeDependenciesRecursively: false,
+          groups: [{ name: "parts", test: SMALL_PARTS }],
+        },
+      },
+    },
   },
   test: {
     css: { include: [/colours\.css/] },

@@ -55,7 +55,7 @@ def test_casualty_shows_its_cause_and_place(stage: Stage) -> None:
 def test_cause_is_read_whole(stage: Stage, tmp_path: Path, size: tuple[int, int]) -> None:
     shown = scenes.some_down(40, DOWN)
     more = [
-        scenes.alarm(index, rule, 1, f"{rule} of a member", 20 + index)
+        scenes.alarm(index, rule, 1, f"{rule} of {scenes.person(index).name}", 20 + index)
         for index in range(2)
         for rule in ("mayday", "no-motion")
     ]

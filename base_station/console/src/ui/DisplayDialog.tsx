@@ -11,7 +11,7 @@ import { FLOOR_NAMES, UNITS } from "../language/measures";
 import { label, t } from "../language/translate";
 import { canSpeak, speechOn } from "../speech";
 import { Dialog } from "./Dialog";
-import { onDemand } from "./onDemand";
+import { Legend } from "./Legend";
 import { SHORTCUTS } from "./shortcuts";
 
 /** How this console looks, reads and sounds; this browser keeps it. */
@@ -86,9 +86,8 @@ export function DisplayDialog() {
   );
 }
 
-const Legend = onDemand(() => import("./Legend").then((part) => part.Legend));
-
-/** Folded: it is long, and looked up once. */
+/** Folded: it is long, and looked up once.  Part of the page, as the plan is whose code draws it: a file of its
+ * own would part the map library, and cost more. */
 function PlanMarks() {
   const isOpen = useSignal(false);
   return (
