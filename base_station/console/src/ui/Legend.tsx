@@ -44,6 +44,7 @@ const MEMBER: Mark = {
   name: "",
   initials: "AB",
   urgency: "normal",
+  down: false,
   chosen: false,
   old: false,
   ageMs: 0,
