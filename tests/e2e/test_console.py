@@ -70,6 +70,8 @@ def test_mayday_is_shown_acknowledged_and_resolved(
     expect(life.first).to_contain_text("resolved (admin: Found and helped, on the stairs)")
     expect(life.first).to_contain_text("acknowledged (admin)")
     close(page.get_by_role("dialog"))
+    card.hover()  # and stay there: a pointer that rests keeps nobody among those who are down
+    expect(page.get_by_role("list", name="Members who are down")).to_have_count(0, timeout=60_000)
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])

@@ -117,11 +117,12 @@ def test_updated_dispatch_changes_only_its_details(
 def test_second_dispatch_is_announced_and_moves_nothing(
     page: Page, station: StationProcess, token: str, tmp_path: Path
 ) -> None:
-    people = page.get_by_role("region", name="People")
-    before = people.bounding_box()
+    orders = page.get_by_role("group", name="Commands").get_by_role("button")
+    before = [button.bounding_box() for button in orders.all()]
     send(tmp_path, station, token, json.dumps({"number": "2026/1235", "address": "Mill Lane"}))
     expect(page.get_by_role("alert").filter(has_text="2026/1235")).to_be_visible()
-    assert people.bounding_box() == before
+    assert before
+    assert [button.bounding_box() for button in orders.all()] == before
     page.get_by_role("alert").get_by_role("button", name="OK").click()
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name="Look at dispatch 2026/1235").click()

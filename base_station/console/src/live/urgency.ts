@@ -70,7 +70,7 @@ export function isJump(beforeMs: number, nowMs: number): boolean {
 }
 
 /** The list after a change.  A member whose state gets worse moves up at once; one whose state improves
- * keeps the place for a while; while `held` (the pointer is over the list) only the former move. */
+ * keeps the place for a while; while `held` (the pointer moves over the list) only the former move. */
 export function arrange(
   before: readonly Place[],
   units: readonly UnitView[],

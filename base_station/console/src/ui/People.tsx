@@ -19,9 +19,13 @@ import { Unassigned } from "./Unassigned";
 /** With more members than this, those who are well get short cards, so that the others stand out. */
 const MANY = 6;
 
+/** A pointer that rests for longer does not hold the list: a member who was helped would stay in red. */
+const HELD_MS = 10_000;
+
 /** The list of people: those who need attention first, without jumps while it is read. */
 export function People({ picture }: { picture: Picture }) {
   const held = useSignal(false);
+  const movedMs = useRef(0); // the pointer
   const places = useSignal<readonly Place[]>([]);
   const down = useComputed(() => places.value.filter(isCasualty).map((place) => place.unitId));
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
@@ -36,7 +40,8 @@ export function People({ picture }: { picture: Picture }) {
       const nowMs = picture.nowMs.value;
       const before = isJump(seenMs.current, nowMs) ? [] : places.value;
       seenMs.current = nowMs;
-      const next = arrange(before, picture.allUnits(), picture.alarms.value, nowMs, held.value);
+      const isHeld = held.value && performance.now() - movedMs.current < HELD_MS;
+      const next = arrange(before, picture.allUnits(), picture.alarms.value, nowMs, isHeld);
       if (!samePlaces(next, places.value)) places.value = next;
     }));
   });
@@ -49,7 +54,11 @@ export function People({ picture }: { picture: Picture }) {
     <section
       class="people"
       aria-label={t("people_list.title")}
-      onPointerEnter={() => (held.value = true)}
+      onPointerEnter={() => {
+        movedMs.current = performance.now();
+        held.value = true;
+      }}
+      onPointerMove={() => (movedMs.current = performance.now())}
       onPointerLeave={() => (held.value = false)}
     >
       <div class={`people-top ${finding.value ? "finding" : ""}`}>

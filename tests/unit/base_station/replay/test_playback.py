@@ -84,7 +84,7 @@ def test_checkpoints_of_another_program_do_not_send_a_seek_back(
     for _ in (saving := Playback(source)).seek(START_NS + 80 * NS_PER_S):
         pass
     source.checkpoints.save(START_NS + 80 * NS_PER_S, 2, saving.pipeline.checkpoint())
-    monkeypatch.setattr("base_station.storage.checkpoints._program", lambda: 7)
+    monkeypatch.setattr("base_station.storage.checkpoints.program_checksum", lambda: 7)
     opened: list[int] = []
 
     def counting(t_ns: int) -> Iterable[Record]:

@@ -71,7 +71,7 @@ def tracked(way: list[tuple[float, float]], noise: PathNoise, seed: int) -> list
 def held_outside(
     way: list[tuple[float, float]], noise: PathNoise | None, seed: int, first_m: float
 ) -> list[bool]:
-    """Where the stated region holds the truth in the first metres outside."""
+    """Return for each place of the first metres outside whether the stated region holds it."""
     fuser, own = FUSERS[0].new(), tracked(way, noise or FOOT, seed)
     fuser.set_map(upper_floor())
     heading_rad = 0.05 * np.random.default_rng(100 + seed).normal()

@@ -35,7 +35,7 @@ def test_after_a_hole_it_tells_of_its_own_moment():
 
 
 def is_refused(since_s):
-    """Whether a sample is refused that falls and lands soon, so long after the last stance."""
+    """Return True if a sample that falls and lands soon after the last stance is refused."""
     ring, progress, state = new_ring(200.0), new_progress()[0], new_filter_state()[0]
     ring["t_s"] = np.arange(len(ring)) * PERIOD_S
     ring["motion_m2ps4"], ring["stride_minimum_m2ps4"] = 10.0, 10.0
