@@ -20,6 +20,7 @@ from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
 from shared.errors import ConfigError
 
+SEGMENTS: tuple[str, ...] = get_args(Segment)
 _STANDS_S = 3.0
 _ARRIVES_MPS = 1.35
 
@@ -34,9 +35,9 @@ def open_simulation(text: str) -> Simulation:
     name, _, query = text.partition("?")
     options = dict(parse_qsl(query, keep_blank_values=True))
     scenario = find_scenario(name)
-    worn_on = _segment(options.pop("worn_on", scenario.worn_on))
-    if worn_on not in get_args(Segment):
-        known = ", ".join(get_args(Segment))
+    worn_on = segment_at(options.pop("worn_on", scenario.worn_on))
+    if worn_on not in SEGMENTS:
+        known = ", ".join(SEGMENTS)
         raise ConfigError(f"simulated:{text}: worn_on is {worn_on!r}; known are {known}")
     seed = _whole_number(text, options, "seed")
     number = _whole_number(text, options, "number")
@@ -50,9 +51,11 @@ def open_simulation(text: str) -> Simulation:
     return Simulation(replace(scenario, worn_on=worn_on), seed, number=number)
 
 
-def _segment(place: str) -> str:
-    """Return the segment that is simulated for a sensor at a part of the body."""
-    return place if place in get_args(Segment) else PLACES.get(place, place)
+def segment_at(place: str) -> str:
+    """Return the segment that is simulated for a sensor at a part of the body; of one that is none
+    of ``SEGMENTS`` no motion can be simulated.
+    """
+    return place if place in SEGMENTS else PLACES.get(place, place)
 
 
 def _whole_number(text: str, options: dict[str, str], name: str) -> int:

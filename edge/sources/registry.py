@@ -56,6 +56,14 @@ SOURCES: tuple[SourceKind, ...] = (
 )
 
 
+def open_sensor(text: str, place: str) -> Source:
+    """Open the source of the only sensor; a simulated one is worn at ``place`` where that is set.
+
+    Raises ``ConfigError`` and others, as ``open_source``.
+    """
+    return open_source(worn_by_one(text, 0, place))
+
+
 def open_source(text: str) -> Source:
     """Open the source that ``scheme:argument`` names, as in ``recording:PATH``.
 
@@ -70,13 +78,12 @@ def open_sensors(sources: Mapping[str, str], places: Mapping[str, str]) -> Sourc
 
     A simulated one is worn where ``places`` has it, by the person whom the first one simulates.
     """
-    members: dict[str, Source] = {}
-    for number, (name, text) in enumerate(sources.items()):
-        is_simulated = text.startswith("simulated:")
-        members[name] = open_source(
-            worn_by_one(text, number, places.get(name, "")) if is_simulated else text
-        )
-    return SensorGroup(members)
+    return SensorGroup(
+        {
+            name: open_source(worn_by_one(text, number, places.get(name, "")))
+            for number, (name, text) in enumerate(sources.items())
+        }
+    )
 
 
 def source_kind(text: str) -> SourceKind:

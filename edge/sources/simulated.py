@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from urllib.parse import parse_qsl
 
 from edge.samples import SensorBatch, SensorDescription
-from edge.simulation.factory import open_simulation
+from edge.simulation.factory import SEGMENTS, open_simulation, segment_at
 from edge.sources.interface import OfflineSource, Outage
+from shared.errors import ConfigError
+
+logger = logging.getLogger(__name__)
 
 
 class SimulatedSource(OfflineSource):
@@ -33,15 +37,43 @@ class SimulatedSource(OfflineSource):
 
 
 def worn_by_one(text: str, number: int, place: str) -> str:
-    """Return the text of a simulated source as the sensor of this number, worn at ``place``; what
-    the text says itself stays.
+    """Return the text of a simulated source as the sensor of this number, worn at ``place``, where
+    that is set; what the text says itself stays.  The text of any other source is returned as it
+    is.
+
+    Raises ConfigError for a place of which no motion can be simulated.
     """
+    scheme, _, argument = text.partition(":")
+    if scheme != "simulated" or not argument:
+        return text
     _, _, query = text.partition("?")
     options = dict(parse_qsl(query, keep_blank_values=True))
     added = {"number": str(number)} if number else {}
-    if place:
+    if place and _is_simulated_at(place, text, options.get("worn_on")):
         added["worn_on"] = place
     new = "&".join(f"{key}={value}" for key, value in added.items() if key not in options)
     if not new:
         return text
     return f"{text}{'&' if query else '?'}{new}"
+
+
+def _is_simulated_at(place: str, text: str, said: str | None) -> bool:
+    """Return True where the text leaves the part of the body to the settings of the unit."""
+    segment = segment_at(place)
+    if said is None:
+        if segment not in SEGMENTS:
+            raise ConfigError(
+                f"{text}: no motion can be simulated at {place}, where the sensor is set to be "
+                f"worn; say in the source which one is to be in place of it, as worn_on=chest: "
+                f"{', '.join(SEGMENTS)}"
+            )
+        return True
+    if segment_at(said) != segment:
+        logger.warning(
+            "%s simulates the motion at %s, as it says, and the unit takes it for one at %s, as is "
+            "set",
+            text,
+            said,
+            place,
+        )
+    return False
