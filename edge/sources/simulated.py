@@ -57,10 +57,10 @@ def worn_by_one(text: str, number: int, place: str) -> str:
     return f"{text}{'&' if query else '?'}{new}"
 
 
-def _is_simulated_at(place: str, text: str, said: str | None) -> bool:
+def _is_simulated_at(place: str, text: str, in_source: str | None) -> bool:
     """Return True where the text leaves the part of the body to the settings of the unit."""
     segment = segment_at(place)
-    if said is None:
+    if in_source is None:
         if segment not in SEGMENTS:
             raise ConfigError(
                 f"{text}: no motion can be simulated at {place}, where the sensor is set to be "
@@ -68,12 +68,12 @@ def _is_simulated_at(place: str, text: str, said: str | None) -> bool:
                 f"{', '.join(SEGMENTS)}"
             )
         return True
-    if segment_at(said) != segment:
+    if segment_at(in_source) != segment:
         logger.warning(
             "%s simulates the motion at %s, as it says, and the unit takes it for one at %s, as is "
             "set",
             text,
-            said,
+            in_source,
             place,
         )
     return False

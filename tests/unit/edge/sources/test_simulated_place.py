@@ -1,4 +1,4 @@
-"""Where a simulated sensor is worn: by its source, else by the unit's settings."""
+"""Place on the body of a simulated sensor: by its source, else by the unit's settings."""
 
 from __future__ import annotations
 
