@@ -205,7 +205,7 @@ class LandingResidualConfig(NamedTuple):
     zupt_residual_usual: float = 0.025  # of a sensor with the gains of a data sheet
     zupt_residual_quiet: float = 0.012  # of one whose gains are right
     gain_landings: float = 8.0  # that show the gains; before the first a data sheet is reported
-    least_gain_std: float = 0.002  # that is reported for a sensor without a description
+    least_gain_std: float = 0.006  # reported of any sensor that is not described; see decision 163
     zupt_residual_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond
     zupt_residual_slow_mps: float = 2.0  # a slower swing does not show them
     zupt_residual_poor: float = 0.025  # then the noise is what the filter works with
