@@ -19,6 +19,7 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.missing_segments import KnownSegment, names_between
 from shared.clock import NS_PER_S
+from shared.coded_text import coded
 from shared.errors import ArchiveError
 from shared.mcap_log import SegmentInfo
 
@@ -50,8 +51,13 @@ class ArchivedLogs:
         encoded = store.read_all(name)
         if encoded is None:
             raise ArchiveError(
-                f"the log of {incident_id} is not here any more, and the archive {location} has "
-                "no complete copy of it: see whether it was moved"
+                coded(
+                    "archive-log-nowhere",
+                    "the log of {incident} is not here any more, and the archive {archive} has no "
+                    "complete copy of it: see whether it was moved",
+                    incident=incident_id,
+                    archive=location,
+                )
             )
         decoded_entry(encoded, f"{location}: {name}")
         return ArchivedLog(location, encoded)

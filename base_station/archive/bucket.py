@@ -24,6 +24,14 @@ from obstore.exceptions import (
 )
 from obstore.store import S3Store
 
+from base_station.archive.store import (
+    CANNOT_LIST,
+    cannot_read,
+    cannot_remove,
+    cannot_write,
+    file_short,
+)
+from shared.coded_text import coded
 from shared.errors import ArchiveError, UserError
 
 PATIENCE = timedelta(seconds=30)  # of a request, with all its repetitions
@@ -38,8 +46,13 @@ class BucketStore:
         parts = urlsplit(address)
         if not parts.hostname or parts.username or parts.query:
             raise UserError(
-                f"{address} is no bucket: give s3://BUCKET/PLACE, and {_CREDENTIALS} in the "
-                "environment"
+                coded(
+                    "archive-no-bucket",
+                    "{archive} is no bucket: give s3://BUCKET/PLACE, and {credentials} in the "
+                    "environment",
+                    archive=address,
+                    credentials=_CREDENTIALS,
+                )
             )
         self._address = address.rstrip("/")
         # Else it would ask for credentials at an address that only machines of a cloud have.
@@ -62,32 +75,32 @@ class BucketStore:
         return self._address
 
     def put(self, name: str, content: Path) -> None:
-        with self._asking(f"{name} cannot be written"):
+        with self._asking(cannot_write(name)):
             obstore.put(self._store, name, content)
 
     def size(self, name: str) -> int | None:
-        with self._asking(f"{name} cannot be read"):
+        with self._asking(cannot_read(name)):
             try:
                 return obstore.head(self._store, name)["size"]
             except (NotFoundError, FileNotFoundError):
                 return None
 
     def read_all(self, name: str) -> bytes | None:
-        with self._asking(f"{name} cannot be read"):
+        with self._asking(cannot_read(name)):
             try:
                 return bytes(obstore.get(self._store, name).bytes())
             except (NotFoundError, FileNotFoundError):
                 return None
 
     def read(self, name: str, begin: int, end: int) -> bytes:
-        with self._asking(f"{name} cannot be read"):
+        with self._asking(cannot_read(name)):
             data = bytes(obstore.get_range(self._store, name, start=begin, end=end))
         if len(data) < end - begin:
-            raise ArchiveError(f"{self.address}: {name} is shorter than it was: copy it once more")
+            raise file_short(self.address, name)
         return data
 
     def names(self, beginning: str = "") -> Sequence[str]:
-        with self._asking("what is in it cannot be read"):
+        with self._asking(CANNOT_LIST):
             folder = beginning.rpartition("/")[0]
             pages = obstore.list(self._store, folder or None)
             return sorted(
@@ -95,7 +108,7 @@ class BucketStore:
             )
 
     def remove(self, name: str) -> None:
-        with self._asking(f"{name} cannot be removed"):
+        with self._asking(cannot_remove(name)):
             obstore.delete(self._store, name)
 
     @contextmanager
@@ -113,21 +126,38 @@ class BucketStore:
             if status and status[1] == "404":
                 raise self._missing(what) from error
             raise ArchiveError(
-                f"the archive {self.address}: {what} now ({_reason(error)}); nothing is lost: try "
-                "it again when the bucket answers"
+                coded(
+                    "archive-bucket-away",
+                    "the archive {archive}: {what} now ({error}); nothing is lost: try it again "
+                    "when the bucket answers",
+                    archive=self.address,
+                    what=what,
+                    error=_reason(error),
+                )
             ) from error
 
     def _refused(self, what: str) -> ArchiveError:
         return ArchiveError(
-            f"the archive {self.address}: {what}: the account of {_CREDENTIALS} may not do it; "
-            "give it the rights to list, read, write and delete there (s3:ListBucket, "
-            "s3:GetObject, s3:PutObject, s3:DeleteObject)"
+            coded(
+                "archive-bucket-refuses",
+                "the archive {archive}: {what}: the account of {credentials} may not do it; give "
+                "it the rights to list, read, write and delete there (s3:ListBucket, "
+                "s3:GetObject, s3:PutObject, s3:DeleteObject)",
+                archive=self.address,
+                what=what,
+                credentials=_CREDENTIALS,
+            )
         )
 
     def _missing(self, what: str) -> ArchiveError:
         return ArchiveError(
-            f"the archive {self.address}: {what}: there is no such bucket or file; make the "
-            "bucket, or see that the address is right"
+            coded(
+                "archive-bucket-missing",
+                "the archive {archive}: {what}: there is no such bucket or file; make the bucket, "
+                "or see that the address is right",
+                archive=self.address,
+                what=what,
+            )
         )
 
 

@@ -15,7 +15,7 @@ from base_station.archive.store import ArchiveStore
 from base_station.storage.db.archived import ArchivedFile
 from base_station.storage.db.incident_rows import Row
 from base_station.storage.db.known_people import KnownPerson
-from shared.coded_text import TextCode, with_codes
+from shared.coded_text import TextCode, coded, with_codes
 from shared.errors import ArchiveError
 
 LOG_NAME = "incident.mcap"  # all of it, a log that stands alone (decision 119)
@@ -55,7 +55,14 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
         for one in self.files:
             if one.name == name:
                 return one
-        raise ArchiveError(f"the copy of {self.incident_id} has no {name}: copy it once more")
+        raise ArchiveError(
+            coded(
+                "archive-copy-lacks-file",
+                "the copy of {incident} has no {file}: copy it once more",
+                incident=self.incident_id,
+                file=name,
+            )
+        )
 
 
 def name_in_archive(incident_id: str, name: str) -> str:
@@ -98,13 +105,23 @@ def decoded_entry(encoded: bytes, where: str) -> CatalogueEntry:
         entry = msgspec.json.decode(encoded, type=CatalogueEntry)
     except msgspec.MsgspecError as error:
         raise ArchiveError(
-            f"the archive {where} cannot be read ({error}): copy the incident once more, or use "
-            "the version of Muster that wrote it"
+            coded(
+                "archive-entry-unreadable",
+                "the archive {place} cannot be read ({error}): copy the incident once more, or "
+                "use the version of Muster that wrote it",
+                place=where,
+                error=str(error),
+            )
         ) from error
     if entry.version > VERSION:
         raise ArchiveError(
-            f"the archive {where} was written by a newer version of Muster "
-            f"({entry.muster_version}): use that one"
+            coded(
+                "archive-entry-newer",
+                "the archive {place} was written by a newer version of Muster ({version}): use "
+                "that one",
+                place=where,
+                version=entry.muster_version,
+            )
         )
     return entry
 
@@ -115,9 +132,15 @@ def require_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry:
     """
     entry = read_entry(store, incident_id)
     if entry is None:
-        known = ", ".join(archived_ids(store)) or "none"
+        known = ", ".join(archived_ids(store))
         raise ArchiveError(
-            f"the archive {store.address} has no complete copy of {incident_id}; it has: {known}"
+            coded(
+                "archive-no-copy",
+                "the archive {archive} has no complete copy of {incident}; it has: {known}",
+                archive=store.address,
+                incident=incident_id,
+                known=known or coded("archive-has-none", "none"),
+            )
         )
     return entry
 

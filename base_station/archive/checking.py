@@ -17,6 +17,7 @@ from base_station.archive.catalogue import (
 )
 from base_station.archive.store import ArchiveStore
 from base_station.storage.db.archived import ArchivedFile
+from shared.coded_text import coded
 from shared.errors import ArchiveError
 from shared.out_file import whole
 
@@ -52,13 +53,29 @@ def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) ->
     name = name_in_archive(entry.incident_id, file.stored_name)
     size = store.size(name)
     if size != file.size_bytes:
-        there = "is missing" if size is None else f"has {size} bytes"
-        return f"{file.name} {there}, and should have {file.size_bytes}: copy it once more"
+        if size is None:
+            return coded(
+                "archive-file-missing",
+                "{file} is missing, and should have {bytes} bytes: copy it once more",
+                file=file.name,
+                bytes=file.size_bytes,
+            )
+        return coded(
+            "archive-file-size",
+            "{file} has {there} bytes, and should have {bytes}: copy it once more",
+            file=file.name,
+            there=size,
+            bytes=file.size_bytes,
+        )
     digest = hashlib.sha256()
     for part in parts_of(store, entry, file):
         digest.update(part)
     if digest.hexdigest() != file.sha256:
-        return f"{file.name} is not as it was written: copy it once more"
+        return coded(
+            "archive-file-differs",
+            "{file} is not as it was written: copy it once more",
+            file=file.name,
+        )
     return ""
 
 
@@ -80,8 +97,15 @@ def fetch_log(
                 on_progress(count / file.size_bytes)
         if digest.hexdigest() != file.sha256:
             raise ArchiveError(
-                f"the archive {store.address}: {file.name} of {entry.incident_id} is not as it was "
-                f"written, and {out} was not made: copy it once more while the station has it"
+                coded(
+                    "archive-fetched-differs",
+                    "the archive {archive}: {file} of {incident} is not as it was written, and "
+                    "{path} was not made: copy it once more while the station has it",
+                    archive=store.address,
+                    file=file.name,
+                    incident=entry.incident_id,
+                    path=str(out),
+                )
             )
 
 

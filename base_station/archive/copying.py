@@ -26,6 +26,16 @@ from base_station.archive.catalogue import (
     stored_apart,
 )
 from base_station.archive.checking import defect_of
+from base_station.archive.copying_errors import (
+    LogGoneError,
+    as_one,
+    copy_gone,
+    copy_older,
+    copy_stays,
+    has_no_copy,
+    not_kept,
+    of_another_station,
+)
 from base_station.archive.redacted_copy import (
     CopyIncompleteError,
     ErasedSubjects,
@@ -53,7 +63,7 @@ from base_station.storage.imports import ImportFolder
 from base_station.storage.missing_segments import names_between
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import NS_PER_S, Clock
-from shared.coded_text import code_of_text
+from shared.coded_text import code_of_text, text_of_error
 from shared.errors import ArchiveError
 from shared.mcap_log import (
     Segment,
@@ -94,10 +104,6 @@ class _CopySource:
     damage: tuple[str, ...] = ()  # that is known of it
 
 
-class _LogGoneError(ArchiveError):
-    """A copy cannot be made again without the log, so the archived copy must not be replaced."""
-
-
 class ArchiveCopier:
     def __init__(
         self,
@@ -129,11 +135,11 @@ class ArchiveCopier:
         for number, (incident, known_ns) in enumerate(due):
             try:
                 yield self._copy(incident, known_ns)
-            except _LogGoneError as error:
-                kept.append(str(error))
+            except LogGoneError as error:
+                kept.append(text_of_error(error))
             on_progress((number + 1) / len(due))
         if kept:
-            raise ArchiveError(". ".join(kept))
+            raise ArchiveError(as_one(kept))
 
     def _note_lost_copies(self) -> Iterator[str]:
         """Make copies due again that were written and are not there any more; return a sentence for
@@ -144,21 +150,14 @@ class ArchiveCopier:
         there = set(archived_ids(self._archive)) if noted else set()
         lost = [one for one in noted if one not in there]
         if lost and not there:
-            raise ArchiveError(
-                f"the archive {self._archive.address} has none of the {len(lost)} incidents that "
-                "were copied to it: see that it is the right disk or bucket; to begin another "
-                "archive, give it another place"
-            )
+            raise has_no_copy(self._archive.address, len(lost))
         records = Records(self._store, self._clock)
         for incident_id in lost:
             incident = records.incident(incident_id)
             if incident is not None and self._has_log(incident):
                 self._copies.forget(incident_id)
             else:
-                yield (
-                    f"the copy of {incident_id} is not in {self._archive.address} any more, and "
-                    "parts of its log are not here: bring either back"
-                )
+                yield copy_gone(self._archive.address, incident_id)
 
     def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
         """Copy an incident.  ``known_ns``: station time of the newest data known of it."""
@@ -166,10 +165,7 @@ class ArchiveCopier:
         there = read_entry(self._archive, incident.incident_id)
         own_id = self._log.log_id  # empty where all segments are gone
         if there is not None and own_id and there.log_id not in ("", own_id):
-            raise ArchiveError(
-                f"the archive {self._archive.address} has a copy of {incident.incident_id} of "
-                "another station: give each station a place of its own in it"
-            )
+            raise of_another_station(self._archive.address, incident.incident_id)
         if there is not None and self._is_current(there, incident, known_ns):
             return self._keep(there)
         with TemporaryDirectory(prefix="muster-archive-") as scratch:
@@ -181,18 +177,12 @@ class ArchiveCopier:
                 if not subjects and self._copies.is_outdated_by_erasure(incident.incident_id):
                     return self._keep(there)  # no erased person is in it
                 if not subjects:
-                    raise _LogGoneError(
-                        f"{incident.incident_id} has newer data than its copy in "
-                        f"{self._archive.address}, and parts of its log are not here any more: the "
-                        "copy stays as it is. Bring the missing segments back into the log"
-                    )
+                    raise copy_older(self._archive.address, incident.incident_id)
                 source = self._redacted(there, subjects, Path(scratch))
             entry = self._pack(incident, source, Path(scratch))
             if source.log is not self._log and (lost := {*entry.damage} - {*source.damage}):
-                raise ArchiveError(
-                    f"the copy of {incident.incident_id} in {self._archive.address} cannot be made "
-                    f"anew, and stays as it is: {'; '.join(sorted(lost))}"
-                )
+                reasons = [one for one in entry.damage_texts() if one in lost]
+                raise copy_stays(self._archive.address, incident.incident_id, reasons)
             if there is not None:
                 entry = stored_apart(entry)
             self._send(entry, Path(scratch))
@@ -216,7 +206,7 @@ class ArchiveCopier:
         try:
             log = redacted_log(self._archive, there, subjects, scratch / "redacted")
         except CopyIncompleteError as error:
-            raise _LogGoneError(str(error)) from error
+            raise LogGoneError(text_of_error(error)) from error
         has_radio = any(one.name == RADIO_NAME for one in there.files)
         return _CopySource(
             log, None, there.known_ns, has_radio=has_radio, damage=there.damage_texts()
@@ -280,10 +270,7 @@ class ArchiveCopier:
             self._archive.put(name, scratch / one.name)
         for one in entry.files:
             if defect := defect_of(self._archive, entry, one):
-                raise ArchiveError(
-                    f"the archive {self._archive.address} did not keep {entry.incident_id}: "
-                    f"{defect}"
-                )
+                raise not_kept(self._archive.address, entry.incident_id, defect)
         (scratch / ENTRY_NAME).write_bytes(encoded_entry(entry))
         self._archive.put(name_in_archive(entry.incident_id, ENTRY_NAME), scratch / ENTRY_NAME)
 

@@ -31,6 +31,7 @@ from base_station.storage.db.database import Database
 from base_station.storage.db.erasures_done import erased_incidents_since, erasures_done
 from base_station.storage.db.window import FOREVER_NS
 from shared.channels import OPERATOR
+from shared.coded_text import coded
 from shared.errors import ArchiveError, UserError
 from shared.mcap_log import SegmentReader, channel_of_audio, rewrite_segment, segment_path
 from shared.messages import STATION_ID
@@ -116,7 +117,12 @@ def _erasures(
             yield erasure_of_incident(actions, incident_id, is_whole=False)
         except UserError as error:
             raise CopyIncompleteError(
-                f"{entry.incident_id} has people of {incident_id}, which was erased, and its copy "
-                "does not tell who they are: bring the missing segments back into the log, or "
-                "remove the copy"
+                coded(
+                    "archive-copy-incomplete",
+                    "{incident} has people of {erased}, which was erased, and its copy does not "
+                    "tell who they are: bring the missing segments back into the log, or remove "
+                    "the copy",
+                    incident=entry.incident_id,
+                    erased=incident_id,
+                )
             ) from error

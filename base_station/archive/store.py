@@ -9,12 +9,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol
 
+from shared.coded_text import coded, text_of_error
 from shared.durable_names import sync_folder
 from shared.errors import ArchiveError, ConfigError, UserError
 from shared.out_file import whole
 from shared.own_files import make_folder
 
 BUCKET = "s3://"
+CANNOT_LIST = coded("archive-cannot-list", "what is in it cannot be read")
+_NO_FOLDER = coded("archive-no-folder", "there is no such folder")
 
 
 class ArchiveStore(Protocol):
@@ -55,13 +58,46 @@ def open_store(address: str) -> ArchiveStore:
             from base_station.archive.bucket import BucketStore  # noqa: PLC0415  # optional
         except ModuleNotFoundError as error:
             raise ConfigError(
-                f"{address} needs a library that is not installed: pip install --require-hashes "
-                "-r deploy/requirements-archive.lock"
+                coded(
+                    "archive-library-missing",
+                    "{archive} needs a library that is not installed: pip install "
+                    "--require-hashes -r deploy/requirements-archive.lock",
+                    archive=address,
+                )
             ) from error
         return BucketStore(address)
     if "://" in address:
-        raise UserError(f"{address}: an archive is a folder, or s3://BUCKET/PLACE")
+        raise UserError(
+            coded(
+                "archive-no-address",
+                "{archive}: an archive is a folder, or s3://BUCKET/PLACE",
+                archive=address,
+            )
+        )
     return FolderStore(Path(address))
+
+
+def cannot_write(name: str) -> str:
+    return coded("archive-cannot-write", "{file} cannot be written", file=name)
+
+
+def cannot_read(name: str) -> str:
+    return coded("archive-cannot-read", "{file} cannot be read", file=name)
+
+
+def cannot_remove(name: str) -> str:
+    return coded("archive-cannot-remove", "{file} cannot be removed", file=name)
+
+
+def file_short(address: str, name: str) -> ArchiveError:
+    return ArchiveError(
+        coded(
+            "archive-file-short",
+            "{archive}: {file} is shorter than it was: copy it once more",
+            archive=address,
+            file=name,
+        )
+    )
 
 
 class FolderStore:
@@ -75,7 +111,7 @@ class FolderStore:
         return str(self._folder.absolute())
 
     def put(self, name: str, content: Path) -> None:
-        with self._asking(f"{name} cannot be written"):
+        with self._asking(cannot_write(name)):
             path = self._folder / name
             make_folder(path.parent)
             try:
@@ -88,18 +124,26 @@ class FolderStore:
                     target.flush()
                     os.fsync(target.fileno())
             except UserError as error:
-                raise ArchiveError(f"{self.address}: {error}") from error
+                reason = text_of_error(error)
+                raise ArchiveError(
+                    coded(
+                        "archive-not-written",
+                        "{archive}: {reason}",
+                        archive=self.address,
+                        reason=reason,
+                    )
+                ) from error
             sync_folder(path.parent)
 
     def size(self, name: str) -> int | None:
-        with self._asking(f"{name} cannot be read"):
+        with self._asking(cannot_read(name)):
             try:
                 return (self._folder / name).stat().st_size
             except FileNotFoundError:
                 return None
 
     def read_all(self, name: str) -> bytes | None:
-        with self._asking(f"{name} cannot be read"):
+        with self._asking(cannot_read(name)):
             try:
                 return (self._folder / name).read_bytes()
             except FileNotFoundError:
@@ -107,18 +151,18 @@ class FolderStore:
 
     def read(self, name: str, begin: int, end: int) -> bytes:
         with (
-            self._asking(f"{name} cannot be read"),
+            self._asking(cannot_read(name)),
             (self._folder / name).open("rb") as file,
         ):
             data = os.pread(file.fileno(), end - begin, begin)
         if len(data) < end - begin:
-            raise ArchiveError(f"{self.address}: {name} is shorter than it was: copy it once more")
+            raise file_short(self.address, name)
         return data
 
     def names(self, beginning: str = "") -> Sequence[str]:
-        with self._asking("what is in it cannot be read"):
+        with self._asking(CANNOT_LIST):
             if not self._folder.is_dir():
-                raise FileNotFoundError(2, "there is no such folder")
+                raise FileNotFoundError(2, _NO_FOLDER)
             files = (
                 one
                 for one in (self._folder / beginning.rpartition("/")[0]).rglob("*")
@@ -128,7 +172,7 @@ class FolderStore:
             return sorted(one for one in names if one.startswith(beginning))
 
     def remove(self, name: str) -> None:
-        with self._asking(f"{name} cannot be removed"):
+        with self._asking(cannot_remove(name)):
             (self._folder / name).unlink(missing_ok=True)
 
     @contextmanager
@@ -137,6 +181,12 @@ class FolderStore:
             yield
         except OSError as error:
             raise ArchiveError(
-                f"the archive {self.address}: {what} ({error.strerror or error}); see that the "
-                "disk is there, has room, and may be used by whom the station runs as"
+                coded(
+                    "archive-disk-fails",
+                    "the archive {archive}: {what} ({error}); see that the disk is there, has "
+                    "room, and may be used by whom the station runs as",
+                    archive=self.address,
+                    what=what,
+                    error=error.strerror or str(error),
+                )
             ) from error

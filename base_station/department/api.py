@@ -29,6 +29,7 @@ from base_station.department.answers import (
 )
 from base_station.department.archive_replays import ArchiveReplays
 from base_station.department.views import DepartmentViews, PeopleQuery
+from shared.coded_text import coded
 
 _SEARCH_MAX = 80
 
@@ -106,9 +107,18 @@ def open_past_incident(
 ) -> StartedReplay:
     """Show a past incident from the archive; answered when browsers can connect."""
     if not views.has_archive:
-        raise Problem(404, "This department has no archive: set location in [archive].")
+        raise Problem(
+            404,
+            coded(
+                "department-no-archive",
+                "This department has no archive: set location in [archive].",
+            ),
+        )
     if not views.is_past(wanted.station, wanted.incident_id):
-        raise Problem(404, "No station has reported that this incident is closed.")
+        raise Problem(
+            404,
+            coded("department-not-closed", "No station has reported that this incident is closed."),
+        )
     services: DepartmentServices = connection.app.state.services
     return services.replays.open(wanted.station, wanted.incident_id)
 

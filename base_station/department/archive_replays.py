@@ -15,6 +15,7 @@ from threading import Lock, Timer
 from base_station.config import HttpConfig, host_and_port
 from base_station.department.answers import StartedReplay
 from base_station.department.config import DepartmentArchiveConfig
+from shared.coded_text import coded
 from shared.errors import ArchiveError
 
 _LOGIN = re.compile(r"^login for this replay: (\S+)  password: (\S+)$")
@@ -109,7 +110,12 @@ def _login_of(process: subprocess.Popen[str], give_up: Callable[[], None]) -> tu
         patience.cancel()
     give_up()
     raise ArchiveError(
-        f"the replay did not start: {' '.join(printed[-_TAIL_LINES:]) or 'it gave no reason'}"
+        coded(
+            "archive-replay-not-started",
+            "the replay did not start: {reason}",
+            reason=" ".join(printed[-_TAIL_LINES:])
+            or coded("archive-replay-no-reason", "it gave no reason"),
+        )
     )
 
 

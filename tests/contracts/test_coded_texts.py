@@ -23,6 +23,7 @@ from tests.conftest import PROJECT_ROOT
 from tests.rig.console_catalogues import LANGUAGES, MESSAGE
 
 PARTS = (
+    "archive_errors",
     "problems",
     "unit_faults",
     "unit_checks",

@@ -28,6 +28,28 @@ describe("a text of the station", () => {
     expect(problemTexts({ problems: [ENGLISH] })).toEqual([ENGLISH]);
   });
 
+  test("about an archive that does not answer has what was asked of it, and the error", async () => {
+    const away = {
+      code: "archive-bucket-away",
+      texts: {
+        archive: "s3://city/engine-7",
+        what: "i1/catalogue.json cannot be read",
+        "what:": "archive-cannot-read",
+        "what:file": "i1/catalogue.json",
+        error: "connection refused",
+      },
+      numbers: {},
+    };
+    await show("de");
+    await loadDeferred();
+    expect(codedText(away, "")).toMatch(
+      /^Archiv s3:\/\/city\/engine-7: i1\/catalogue\.json ist nicht lesbar \(connection refused\)\. Nichts ist verloren/,
+    );
+    await show("fr");
+    await loadDeferred();
+    expect(codedText(away, "")).toMatch(/i1\/catalogue\.json est illisible .*Rien n’est perdu/);
+  });
+
   test("has the words of a term and the plural of a number", async () => {
     const ending = {
       code: "certificate-expires",

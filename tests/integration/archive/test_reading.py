@@ -80,6 +80,9 @@ def test_station_archives_automatically_and_shows_incidents_without_log(
         away = archive_of(browser)
         assert away["waiting"] == 2
         assert address in away["text"]
+        code = away["text_code"]
+        assert (code["code"], code["texts"]["archive"]) == ("archive-bucket-away", address)
+        assert code["texts"]["what:"] in ("archive-cannot-list", "archive-cannot-read")
         assert "muster_archive_reachable 0.0" in metrics_of(browser)
     first.kill()
     server.start()
@@ -99,7 +102,7 @@ def test_station_archives_automatically_and_shows_incidents_without_log(
         assert shown_in_replay(browser, 0.5) == with_log
         server.stop()
         try:
-            with pytest.raises(AssertionError, match=f"503 .*{address}"):
+            with pytest.raises(AssertionError, match=f"503 .*{address}.*archive-bucket-away"):
                 browser.call("POST", "/replays", json={"incident_id": "i1"})
         finally:
             server.start()
@@ -132,8 +135,9 @@ def test_queries_about_an_incident_without_log_are_answered_from_the_bucket(
         server.stop()
         try:
             for path in addresses_about_i1(browser).values():
-                with pytest.raises(AssertionError, match=f"503 .*{address}.*nothing is lost"):
+                with pytest.raises(AssertionError, match=f"503 .*{address}.*nothing is lost") as no:
                     browser.text(path)
+                assert "archive-bucket-away" in str(no.value), "consoles have it in their language"
         finally:
             server.start()
         raw = addresses_about_i1(browser)["raw"]

@@ -18,6 +18,7 @@ const PARTS = [
   "dispatch_warning",
   "import_warning",
   "log_defect",
+  "archive_error",
   "refusal_access",
   "refusal_people",
   "refusal_incident",

@@ -1,4 +1,5 @@
 /** Texts that nobody sees at the start, in German: fetched when the page is shown. */
+export * from "./archive_errors";
 export * from "./assessment_reasons";
 export * from "./connection_reasons";
 export * from "./dispatch_warnings";
