@@ -15,7 +15,7 @@ import numpy as np
 
 from edge.samples import Floats
 from edge.simulation.body_plan import LEG_LENGTH_M, BodyPlan
-from edge.simulation.jet import Jet, arctangent, constant, cosine, oscillation, sine
+from edge.simulation.jet import Jet, arctangent, constant, oscillation, sine_and_cosine
 from edge.simulation.kinematics import Attitude, Motion, Place, motion
 from edge.simulation.planner import HALF_TRACK_M
 
@@ -101,7 +101,8 @@ def _leg_pitch(plan: BodyPlan, t_s: Floats) -> Jet:
     yaw = plan.yaw.smoothed(t_s, _FOLLOW_S)
     north = plan.north.jet(t_s) - plan.north.smoothed(t_s, _FOLLOW_S)
     east = plan.east.jet(t_s) - plan.east.smoothed(t_s, _FOLLOW_S)
-    ahead = north * cosine(yaw) + east * sine(yaw)
+    sin_yaw, cos_yaw = sine_and_cosine(yaw)
+    ahead = north * cos_yaw + east * sin_yaw
     return arctangent(ahead.scaled(1.0 / LEG_LENGTH_M))
 
 

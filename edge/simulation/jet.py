@@ -42,12 +42,9 @@ class Jet:
         return Jet(self.value + offset, self.rate, self.accel)
 
 
-def sine(angle: Jet) -> Jet:
-    return _through(angle, np.sin(angle.value), np.cos(angle.value), -np.sin(angle.value))
-
-
-def cosine(angle: Jet) -> Jet:
-    return _through(angle, np.cos(angle.value), -np.sin(angle.value), -np.cos(angle.value))
+def sine_and_cosine(angle: Jet) -> tuple[Jet, Jet]:
+    sin, cos = np.sin(angle.value), np.cos(angle.value)
+    return _through(angle, sin, cos, -sin), _through(angle, cos, -sin, -cos)
 
 
 def arctangent(slope: Jet) -> Jet:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from edge.samples import Floats
-from edge.simulation.jet import Jet, cosine, sine
+from edge.simulation.jet import Jet, sine_and_cosine
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,9 +42,9 @@ class Attitude:
 
     def __init__(self, roll: Jet, pitch: Jet, yaw: Jet) -> None:
         self._angles = roll, pitch, yaw
-        self._sin_roll, self._cos_roll = sine(roll), cosine(roll)
-        self._sin_pitch, self._cos_pitch = sine(pitch), cosine(pitch)
-        self._sin_yaw, self._cos_yaw = sine(yaw), cosine(yaw)
+        self._sin_roll, self._cos_roll = sine_and_cosine(roll)
+        self._sin_pitch, self._cos_pitch = sine_and_cosine(pitch)
+        self._sin_yaw, self._cos_yaw = sine_and_cosine(yaw)
 
     def yawed(self, x: Jet, y: Jet, z: Jet) -> Place:
         """Turn a vector by the yaw alone."""

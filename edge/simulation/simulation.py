@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import radians
 
 import numpy as np
@@ -54,6 +54,8 @@ from shared.errors import ConfigError
 from shared.messages.status import Activity
 
 _BLOCK_S = 2  # generated at once; the noise does not depend on how it is cut into batches
+_HALF_STRIDE_S = 0.55
+_AROUND = 3  # times of ``_around`` a second
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +173,10 @@ class Simulation:
         for start in range(0, total, rows):
             index = np.arange(start, min(start + rows, total))
             t_s = index / rate_hz
-            body = self._body(t_s)
+            # Together: each call takes longer than the numbers of a few more times.
+            seconds = _seconds_between(float(t_s[0]), (start + len(index)) / rate_hz)
+            other_s = _around(seconds) if is_first else np.zeros(0)
+            body, others_body = _split(self._body(np.concatenate((t_s, other_s))), len(t_s))
             temperature_degc = self._imu_temperature_degc(t_s)
             accel_mps2, gyro_radps = imu.measure(self._converted(t_s, body), temperature_degc)
             rotation_ns = body.rotation_nb @ self._rotation_bs
@@ -184,7 +189,7 @@ class Simulation:
                     pressure_pa=baro.measure(start, t_s, body.position_n_m),
                     imu_temperature_degc=temperature_degc,
                 ),
-                others.between(float(t_s[0]), (start + len(index)) / rate_hz) if is_first else (),
+                others.at(seconds, others_body) if is_first else (),
             )
 
     def _field(self, rng: np.random.Generator) -> MagneticField:
@@ -216,23 +221,26 @@ class _Others:
         self._rng = rng
         self._beacons = Beacons(simulation.scenario.beacons, simulation.beacon_rng())
 
-    def between(self, start_s: float, end_s: float) -> tuple[OtherSample, ...]:
+    def at(self, seconds: range, body: Motion) -> tuple[OtherSample, ...]:
+        """``body``: the true motion at the times ``_around`` these seconds."""
+        places_n_m = body.position_n_m.reshape(len(seconds), _AROUND, 3)
+        times_s = body.t_s.reshape(len(seconds), _AROUND)
         samples: list[OtherSample] = []
-        for second in range(int(np.ceil(start_s)), int(np.ceil(end_s))):
+        for second, place_n_m, t_s in zip(seconds, places_n_m, times_s, strict=True):
             if second % 10 == 0:
                 samples.append(BatterySample(second * 1_000_000_000, self._battery(second)))
             samples.append(self._ambient(float(second)))
-            samples.append(self._fix(float(second)))
-            samples += self._sightings(second)
+            samples.append(self._fix(float(second), place_n_m, t_s))
+            samples += self._sightings(second, place_n_m[1])
             every_s = self._simulation.scenario.acknowledges_every_s
             if every_s is not None and second % every_s == 0:
                 samples.append(ButtonPress(second * 1_000_000_000, ACKNOWLEDGE))
         return tuple(samples)
 
-    def _sightings(self, second: int) -> list[SightingSample]:
+    def _sightings(self, second: int, place_n_m: Floats) -> list[SightingSample]:
         if not self._simulation.scenario.beacons:
             return []
-        north_m, east_m, down_m = self._simulation.truth(np.array([float(second)])).position_n_m[0]
+        north_m, east_m, down_m = place_n_m
         return self._beacons.sightings(second, (float(north_m), float(east_m), float(down_m)))
 
     def _battery(self, t_s: float) -> float:
@@ -244,16 +252,31 @@ class _Others:
         reading_degc = true_degc + float(self._rng.normal(0.0, 0.15))
         return AmbientSample(round(t_s * 1e9), round(reading_degc, 2))
 
-    def _fix(self, t_s: float) -> GpsSample:
+    def _fix(self, t_s: float, place: Floats, around_s: Floats) -> GpsSample:
         # The wearer's velocity is the foot's mean over a stride.
-        neighbour_s = np.array([max(0.0, t_s - 0.55), t_s, t_s + 0.55])
-        place = self._simulation.truth(neighbour_s).position_n_m
-        velocity = (place[2] - place[0]) / (neighbour_s[2] - neighbour_s[0])
+        velocity = (place[2] - place[0]) / (around_s[2] - around_s[0])
         return self._gps.fix(
             t_s,
             (float(place[1, 0]), float(place[1, 1]), float(place[1, 2])),
             (float(velocity[0]), float(velocity[1])),
         )
+
+
+def _seconds_between(start_s: float, end_s: float) -> range:
+    return range(int(np.ceil(start_s)), int(np.ceil(end_s)))
+
+
+def _around(seconds: range) -> Floats:
+    """Half a stride before each second, itself, and half a stride after it; none is negative."""
+    offsets_s = np.array([-_HALF_STRIDE_S, 0.0, _HALF_STRIDE_S])
+    times_s: Floats = np.array(seconds, np.float64)[:, np.newaxis] + offsets_s
+    return np.maximum(times_s, 0.0).reshape(-1)
+
+
+def _split(motion: Motion, count: int) -> tuple[Motion, Motion]:
+    """Return the motion at the first ``count`` times, and at the others."""
+    columns = [getattr(motion, field.name) for field in fields(Motion)]
+    return Motion(*(one[:count] for one in columns)), Motion(*(one[count:] for one in columns))
 
 
 def _limited(sensors: SensorErrors, scenario: Scenario) -> SensorErrors:
