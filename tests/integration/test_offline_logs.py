@@ -34,6 +34,7 @@ from shared.mcap_log import (
 )
 from shared.messages.station import CloseIncident, OpenIncident
 from tests.rig.logged_walk import logged, north
+from tests.rig.plain_http import NO_AUTHORITIES
 from tests.rig.round_walk import Walk
 from tests.rig.station_command import Command, CommandByModes
 from tests.rig.station_script import Record, Script
@@ -66,7 +67,10 @@ def client_of_replay(replaying: Command) -> Iterator[httpx.Client]:
     (line,) = (one for one in replaying.output().splitlines() if "login" in one)
     _, username, password = (part.split()[0] for part in line.split(": "))
     with httpx.Client(
-        base_url=f"{address}/api/v1", headers={"Origin": address}, timeout=PATIENCE_S
+        base_url=f"{address}/api/v1",
+        headers={"Origin": address},
+        timeout=PATIENCE_S,
+        verify=NO_AUTHORITIES,
     ) as client:
         login = {"username": username, "password": password}
         assert client.post("/login", json=login).is_success

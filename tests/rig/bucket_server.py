@@ -22,6 +22,7 @@ from obstore.exceptions import BaseError
 from obstore.store import S3Store
 
 from tests.rig.lossy_link import Namespace
+from tests.rig.plain_http import NO_AUTHORITIES
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 
@@ -124,7 +125,8 @@ class BucketServer:
 
     def _answers(self) -> bool:
         try:
-            return httpx.get(f"{self.endpoint}/healthz").status_code == httpx.codes.OK
+            health = httpx.get(f"{self.endpoint}/healthz", verify=NO_AUTHORITIES)
+            return health.status_code == httpx.codes.OK
         except httpx.HTTPError:
             return False
 

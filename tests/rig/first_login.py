@@ -7,6 +7,7 @@ from pathlib import Path
 import httpx
 
 from shared.errors import StoreError
+from tests.rig.plain_http import NO_AUTHORITIES
 from tests.rig.waiting import PATIENCE_S
 
 _CHANGED = "-changed"
@@ -33,7 +34,7 @@ def first_login(url: str, note: Path) -> tuple[str, str]:
 def _log_in_and_change(url: str, username: str, password: str) -> str:
     """The password that holds from now on."""
     with httpx.Client(
-        base_url=f"{url}/api/v1", headers={"Origin": url}, timeout=PATIENCE_S
+        base_url=f"{url}/api/v1", headers={"Origin": url}, timeout=PATIENCE_S, verify=NO_AUTHORITIES
     ) as client:
         login = {"username": username, "password": password}
         me = client.post("/login", json=login).raise_for_status().json()

@@ -18,6 +18,7 @@ from shared.header_factory import HeaderFactory
 from shared.messages import Message
 from tests.rig.incident_closing import despite
 from tests.rig.loaded_program import Invocation, LoadedProgram
+from tests.rig.plain_http import NO_AUTHORITIES
 from tests.rig.program import end_hard
 from tests.rig.waiting import PATIENCE_S, until
 
@@ -122,7 +123,10 @@ class Browser:
     def __init__(self, address: str, data: Path) -> None:
         self.address = address
         self._client = httpx.Client(
-            base_url=f"{address}/api/v1", headers={"Origin": address}, timeout=PATIENCE_S
+            base_url=f"{address}/api/v1",
+            headers={"Origin": address},
+            timeout=PATIENCE_S,
+            verify=NO_AUTHORITIES,
         )
         text = (data / "first-login.txt").read_text()
         credentials = dict(line.split(": ", 1) for line in text.splitlines())

@@ -15,6 +15,7 @@ from base_station.core.events import Received, event_of
 from shared.mcap_log import read_log
 from shared.messages import EventKind, Header, UnitEvent
 from tests.rig import message_factory
+from tests.rig.plain_http import NO_AUTHORITIES
 from tests.rig.served_station import watch
 from tests.rig.station_command import Browser, Unit
 from tests.rig.waiting import PATIENCE_S
@@ -78,7 +79,9 @@ def post(browser: Browser, path: str, what: object, cookie: str = "") -> httpx.R
     """As slowly as the disk makes it."""
     headers = {"Origin": browser.address, "Cookie": cookie}
     address = f"{browser.address}/api/v1{path}"
-    return httpx.post(address, headers=headers, json=what, timeout=PATIENCE_S)
+    return httpx.post(
+        address, headers=headers, json=what, timeout=PATIENCE_S, verify=NO_AUTHORITIES
+    )
 
 
 def login(browser: Browser, data: Path) -> httpx.Response:
