@@ -87,14 +87,12 @@ class TrackerPipeline:
         foot_sensor: str | None = None,
         worn_on: str = "",
         notes: tuple[str, ...] = (),
-        step_scales: Mapping[str, StepScale] | None = None,
     ) -> None:
         """``mayday``: one was latched when the unit last ended suddenly.  ``raw_uplink``: of a unit
         that sends its samples and is tracked elsewhere.  ``foot_sensor``: name of the sensor that
         the tracker needs on a foot.  ``worn_on``: place on the body that the tracker assumes for a
         sensor without one; its inclination shows the posture.  ``notes``: messages on the tracker
-        and its sensors that are sent at the start.  ``step_scales``: those with which the tracker
-        starts, by place.
+        and its sensors that are sent at the start.
         """
         self._identity = identity
         self._sensors = UnitSensors(identity.sensors)
@@ -108,7 +106,6 @@ class TrackerPipeline:
         self._check_mounting(foot_sensor)
         self._choice: Choice | None = None
         self._notes = notes
-        self._step_scales = step_scales or {}
         self._steps_by_fixes = StepScaleByFixes()
         self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
@@ -159,7 +156,7 @@ class TrackerPipeline:
         place, by_fixes = self._tracker.scaled_place, self._steps_by_fixes.scale
         if place is None or by_fixes is None:
             return self._tracker.walked_step_scales
-        start = self._step_scales.get(place)
+        start = self._tracker.start_scales.get(place)
         factor = 1.0 if start is None else start.factor
         return {place: StepScale(factor * by_fixes.factor, factor * by_fixes.std)}
 

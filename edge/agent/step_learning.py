@@ -9,6 +9,7 @@ between them, and as much between the walks of one; 8 % are stated of people who
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from edge.tracker.interface import StepScale
 from shared.path_noise import PathNoise
@@ -36,6 +37,11 @@ def scale_by_length(length_m: float, tracked_m: float, noise: PathNoise | None) 
 def start_scale(learnt: StepScale) -> StepScale:
     """Return what a walk that begins has to be taken for."""
     return StepScale(learnt.factor, math.hypot(learnt.std, WALK_STD))
+
+
+def start_scales(learnt: Mapping[str, StepScale]) -> dict[str, StepScale]:
+    """Return the same for each place."""
+    return {place: start_scale(one) for place, one in learnt.items()}
 
 
 def learn(learnt: StepScale | None, walk: StepScale) -> StepScale:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping
 
-from edge.agent.step_learning import is_of_a_walk, learn, start_scale
+from edge.agent.step_learning import is_of_a_walk, learn, start_scales
 from edge.storage.step_scales import StepScales
 from edge.tracker.interface import StepScale
 from shared.worker import Worker
@@ -46,7 +46,7 @@ class StepScaleKeeper:
     @property
     def start_scales(self) -> dict[str, StepScale]:
         """Scales with which the tracker of this walk starts, by place of the sensor."""
-        return {place: start_scale(one) for place, one in self._learnt.items()}
+        return start_scales(self._learnt)
 
     def take(self, walked: Mapping[str, StepScale]) -> None:
         """Take what this walk has shown so far, by place."""

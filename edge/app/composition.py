@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import os
 import secrets
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
@@ -49,7 +49,6 @@ from edge.storage.journal.journal import Journal, open_journal
 from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
 from edge.storage.step_scales import StepScales
-from edge.tracker.interface import StepScale
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.coded_text import coded
@@ -95,7 +94,6 @@ def compose_agent(
             latch,
             outputs,
             clock,
-            steps.start_scales,
         )
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = _black_box(config, folder, description, clock)
@@ -263,7 +261,6 @@ def _pipeline(
     latch: MaydayLatch,
     outputs: Outputs,
     clock: StationClock,
-    step_scales: Mapping[str, StepScale],
 ) -> TrackerPipeline:
     return TrackerPipeline(
         UnitIdentity(
@@ -282,7 +279,6 @@ def _pipeline(
         foot_sensor=tracking.foot_sensor,
         worn_on=tracking.worn_on,
         notes=tracking.notes,
-        step_scales=step_scales,
     )
 
 

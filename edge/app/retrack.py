@@ -17,8 +17,9 @@ from typing import Any
 from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.app.fitted_sensors import fitted_sensors
+from edge.app.known_steps import known_steps, steps_used
 from edge.app.merged_batches import merged
-from edge.app.tracking import tracking_of
+from edge.app.tracking import Tracking, tracking_of
 from edge.config import EdgeConfig
 from edge.samples import ButtonPress
 from edge.sources.black_box import BlackBoxSource
@@ -51,9 +52,13 @@ def write_retracked(
     settings: Iterable[str],
     rate_hz: float,
     on_progress: Callable[[int], None],
-) -> None:
-    """Write the log of what comes out of a black box; ``on_progress`` gets the log time reached.
+    person: str = "",
+) -> str:
+    """Write the log of what comes out of a black box; return a sentence on the lengths of steps
+    that were used.
 
+    ``on_progress`` gets the log time reached.  ``person``: the wearer, with whose steps, as the
+    unit has learnt them, the tracker starts; empty: with those of people in the mean.
     Raises ConfigError, RecordingError or LogError; then nothing is left at ``out``.
     """
     source = BlackBoxSource(recording)
@@ -62,16 +67,19 @@ def write_retracked(
     with TemporaryDirectory(prefix="muster-retrack-") as scratch:
         config = config_of(source, recording, tracker, calibration, settings)
         sensors = fitted_sensors(config, source, source.unit_id, Path(scratch))
+    known = known_steps(person, _folders_of_unit(recording))
+    tracking = tracking_of(config, sensors, known)
     making = out.with_name(f".part-{out.name}")
     shutil.rmtree(making, ignore_errors=True)
     with closing(SegmentWriter(making, SegmentPolicy(segment_s=1e9, flush_every_s=600.0))) as log:
         reported_ns = 0
-        for log_ns, message in retracked(source, config, sensors, rate_hz):
+        for log_ns, message in retracked(source, config, sensors, tracking, rate_hz):
             log.write(log_ns, channel_of(message).key(source.unit_id), encode(message))
             if log_ns - reported_ns >= _PROGRESS_NS:
                 reported_ns = log_ns
                 on_progress(log_ns)
     making.replace(out)
+    return steps_used(tracking.name, tracking.tracker, person, known)
 
 
 def config_of(
@@ -97,16 +105,22 @@ def config_of(
         flags["calibration"] = calibration
     else:
         flags.update(_calibrations(source.recorded, recording))
-    return load_config(None, EdgeConfig, flags)
+    config = load_config(None, EdgeConfig, flags)
+    if config.wearer.person:
+        raise ConfigError("wearer.person is no setting here; `muster edge retrack` has --person")
+    return config
 
 
 def retracked(
-    source: BlackBoxSource, config: EdgeConfig, sensors: Sequence[FittedSensor], rate_hz: float
+    source: BlackBoxSource,
+    config: EdgeConfig,
+    sensors: Sequence[FittedSensor],
+    tracking: Tracking,
+    rate_hz: float,
 ) -> Iterator[tuple[int, Message]]:
     """Yield positions, statuses and descriptions with the log times of the samples from which they
     come.
     """
-    tracking = tracking_of(config, sensors)
     pipeline: TrackerPipeline | None = None
     log_ns = 0
     batches = source.logged_batches()
@@ -168,8 +182,7 @@ def _file_of(calibration: str, recording: Path) -> Path:
     """Return the file of a calibration by its identity: beside the boots, where a unit and a
     station keep those that were used.
     """
-    boot = recording if recording.is_dir() else recording.parent
-    folders = [boot.absolute().parents[number] / "calibrations" for number in (0, 1)]
+    folders = [folder / "calibrations" for folder in _folders_of_unit(recording)]
     found = next((one for one in folders if (one / f"{calibration}.toml").is_file()), None)
     if found is None:
         raise RecordingError(
@@ -177,3 +190,11 @@ def _file_of(calibration: str, recording: Path) -> Path:
             "its folder calibrations too, or give a calibration"
         )
     return found / f"{calibration}.toml"
+
+
+def _folders_of_unit(recording: Path) -> tuple[Path, ...]:
+    """Return where other files of a unit are beside the boots that a station has pulled, and where
+    the unit itself keeps them.
+    """
+    boot = recording if recording.is_dir() else recording.parent
+    return tuple(boot.absolute().parents[:2])

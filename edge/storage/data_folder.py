@@ -10,6 +10,7 @@ from shared.errors import LogError
 from shared.folder_lock import FolderLock
 from shared.own_files import write_own
 
+STEP_SCALES = "step_scales.json"
 _OWNER = "unit"
 
 
@@ -50,7 +51,7 @@ class UnitDataFolder:
     @property
     def step_scales(self) -> Path:
         """Learnt lengths of the steps of those who have worn it."""
-        return self.path / "step_scales.json"
+        return self.path / STEP_SCALES
 
     @property
     def calibrations(self) -> Path:

@@ -16,6 +16,7 @@ import msgspec
 
 from edge.tracker.interface import StepScale
 from shared.durable_names import sync_folder
+from shared.errors import RecordingError
 from shared.own_files import read_own, write_own
 
 logger = logging.getLogger(__name__)
@@ -42,14 +43,13 @@ class StepScales:
     def __init__(self, path: Path, person: str) -> None:
         """``person``: as in the settings; empty: not known, and nothing is read or kept."""
         self._path = path
-        self._person = hashlib.sha256(person.encode()).hexdigest()[:16] if person else ""
+        self._person = _digest(person) if person else ""
         self._people = _read(path).people if person else {}
 
     @property
     def learnt(self) -> Mapping[str, StepScale]:
         """By place of the sensor, as of the last ``save`` before this start."""
-        kept = self._people.get(self._person, {})
-        return {place: StepScale(one.factor, one.std) for place, one in kept.items()}
+        return _scales(self._people.get(self._person, {}))
 
     def save(self, scales: Mapping[str, StepScale]) -> None:
         """Write the scales of this person at these places.  Raises OSError."""
@@ -67,10 +67,34 @@ class StepScales:
         sync_folder(self._path.parent)
 
 
+def read_learnt(path: Path, person: str) -> Mapping[str, StepScale]:
+    """Return the scales of a person by place, from the file of a unit that may be running; nothing
+    is changed.
+
+    Raises RecordingError for a file that cannot be read.
+    """
+    try:
+        return _scales(_decoded(path).people.get(_digest(person), {}))
+    except (OSError, msgspec.DecodeError) as error:
+        raise RecordingError(f"{path} cannot be read: {error}") from error
+
+
+def _digest(person: str) -> str:
+    return hashlib.sha256(person.encode()).hexdigest()[:16]
+
+
+def _scales(kept: Mapping[str, _KeptScale]) -> dict[str, StepScale]:
+    return {place: StepScale(one.factor, one.std) for place, one in kept.items()}
+
+
+def _decoded(path: Path) -> _ScaleFile:
+    with read_own(path) as file:
+        return msgspec.json.decode(file.read(), type=_ScaleFile)
+
+
 def _read(path: Path) -> _ScaleFile:
     try:
-        with read_own(path) as file:
-            return msgspec.json.decode(file.read(), type=_ScaleFile)
+        return _decoded(path)
     except FileNotFoundError:
         return _ScaleFile()
     except (OSError, msgspec.DecodeError) as error:  # a unit must start in any case

@@ -148,6 +148,13 @@ class LearnsSteps(Protocol):
         ...
 
     @property
+    def start_scales(self) -> Mapping[str, StepScale | None]:
+        """Scales with which it has started, by places of those sensors whose steps it counts; None:
+        that of people in the mean.
+        """
+        ...
+
+    @property
     def walked_step_scales(self) -> Mapping[str, StepScale]:
         """Scales that the person's other sensors have shown in this walk, by place."""
         ...

@@ -69,10 +69,11 @@ def walk_with_fixes(walk: InertialWalk, keeper: StepScaleKeeper) -> None:
     """Run the unit's pipeline over a walk outdoors, as the agent does."""
     pipeline = TrackerPipeline(
         UnitIdentity("1.0", "test", "body", (FittedSensor(walk.description),)),
-        OneSensorTracker(tracker_for(walk, keeper), "", "chest"),
+        OneSensorTracker(
+            BodyTracker(walk.description, CONFIG), "", "chest", keeper.start_scales.get("chest")
+        ),
         HeaderFactory("u1", 7, ManualClock()),
         1.0,
-        step_scales=keeper.start_scales,
     )
     by_second = fixes(walk)
     for second in range(LASTS_S):

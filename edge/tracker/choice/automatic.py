@@ -65,6 +65,11 @@ class AutomaticTracker:
         return self._tracker.scaled_place if isinstance(self._tracker, LearnsSteps) else None
 
     @property
+    def start_scales(self) -> Mapping[str, StepScale | None]:
+        """Scales with which the path has started; see ``LearnsSteps``."""
+        return self._tracker.start_scales if isinstance(self._tracker, LearnsSteps) else {}
+
+    @property
     def walked_step_scales(self) -> Mapping[str, StepScale]:
         """Scales that the other sensors have shown; see ``LearnsSteps``."""
         return self._tracker.walked_step_scales if isinstance(self._tracker, LearnsSteps) else {}

@@ -17,15 +17,33 @@ class OneSensorTracker:
 
     walked_step_scales: Mapping[str, StepScale] = MappingProxyType({})
 
-    def __init__(self, tracker: Tracker, sensor: str = "", place: str = "") -> None:
+    def __init__(
+        self,
+        tracker: Tracker,
+        sensor: str = "",
+        place: str = "",
+        known_scale: StepScale | None = None,
+    ) -> None:
+        """``known_scale``: of the person's steps with a sensor at this place; the tracker, new yet,
+        starts with it if it counts steps.
+        """
         self._tracker = tracker
         self._sensor = sensor
         self._place = place
+        self._known_scale = known_scale
+        if known_scale is not None and isinstance(tracker, ScaledByPerson):
+            tracker.set_step_scale(known_scale)
 
     @property
     def scaled_place(self) -> str | None:
         """Place of the sensor where its steps make the path; see ``LearnsSteps``."""
         return self._place if isinstance(self._tracker, ScaledByPerson) else None
+
+    @property
+    def start_scales(self) -> Mapping[str, StepScale | None]:
+        """Scale with which it has started; see ``LearnsSteps``."""
+        counts_steps = isinstance(self._tracker, ScaledByPerson)
+        return {self._place: self._known_scale} if counts_steps else {}
 
     @property
     def path_noise(self) -> PathNoise | None:

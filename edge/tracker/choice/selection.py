@@ -14,7 +14,6 @@ from edge.tracker.interface import (
     BodyDimensions,
     MultiSensorTracker,
     MultiSensorTrackerEntry,
-    ScaledByPerson,
     TrackerEntry,
     WornSensor,
 )
@@ -48,10 +47,8 @@ class TrackerSelection:
         if self.tracker in _names_of_one():
             (name,) = self.sensors
             tracker = find_tracker(self.tracker).make(sensors[name])
-            scale = dimensions.step_scales.get(sensors[name].place)
-            if scale is not None and isinstance(tracker, ScaledByPerson):
-                tracker.set_step_scale(scale)
-            return OneSensorTracker(tracker, name, sensors[name].place)
+            place = sensors[name].place
+            return OneSensorTracker(tracker, name, place, dimensions.step_scales.get(place))
         worn = {name: WornSensor(sensors[name], sensors[name].place) for name in self.sensors}
         return make_multi_sensor_tracker(self.tracker, worn, dimensions)
 

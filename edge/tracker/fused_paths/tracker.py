@@ -65,10 +65,12 @@ class FusedPathsTracker:
         }
         self._trunk_place: str | None = None  # of the other path where that one is by steps
         self._known = StepScale(1.0, config.length_std[OTHER])  # of that path, at the start
+        self.start_scales: dict[str, StepScale | None] = {}  # see ``LearnsSteps``
         other = trackers[names[OTHER]]
         if isinstance(other, ScaledByPerson):
             self._trunk_place = sensors[names[OTHER]].place
             known = dimensions.step_scales.get(self._trunk_place)
+            self.start_scales = {self._trunk_place: known}
             if known is not None:
                 self._known = known
                 other.set_step_scale(known)
