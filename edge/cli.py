@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from edge.app.calibrate import calibrate
+from edge.app.forget_steps import forget_steps
 from edge.app.retrack_command import retrack
 from shared.options import finite
 
@@ -354,4 +355,5 @@ def _sensor_tables(given: list[str] | None) -> list[dict[str, str]] | None:
 
 
 app.command(rich_help_panel=_OPERATION)(calibrate)
+app.command("forget-steps", rich_help_panel=_OPERATION)(forget_steps)
 app.command(rich_help_panel=_DESK)(retrack)

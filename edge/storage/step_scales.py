@@ -11,6 +11,7 @@ import logging
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
@@ -20,6 +21,8 @@ from shared.errors import RecordingError
 from shared.own_files import read_own, write_own
 
 logger = logging.getLogger(__name__)
+
+_UNFINISHED, _DAMAGED = ".new", ".damaged"
 
 
 class _KeptScale(msgspec.Struct, frozen=True):
@@ -35,6 +38,13 @@ class _KeptScale(msgspec.Struct, frozen=True):
 
 class _ScaleFile(msgspec.Struct, frozen=True):
     people: dict[str, dict[str, _KeptScale]] = msgspec.field(default_factory=dict)
+
+
+class ForgottenSteps(NamedTuple):
+    """Scales that were deleted."""
+
+    places: tuple[str, ...]  # of the sensor
+    unreadable: tuple[Path, ...]  # files of whoever
 
 
 class StepScales:
@@ -58,13 +68,39 @@ class StepScales:
         kept = {place: _KeptScale(one.factor, one.std) for place, one in scales.items()}
         of_person = {**self._people.get(self._person, {}), **kept}
         self._people = {**self._people, self._person: of_person}
-        new = self._path.with_suffix(".new")
+        self._write()
+
+    def forget(self) -> ForgottenSteps:
+        """Delete the scales of this person; without a person there is nothing to delete.
+
+        Files that were left unfinished, or set aside because they could not be read, are deleted
+        whole, as nobody can tell whose scales they have.  Raises OSError.
+        """
+        if not self._person:
+            return ForgottenSteps((), ())
+        places = tuple(self._people.get(self._person, {}))
+        self._people = {one: kept for one, kept in self._people.items() if one != self._person}
+        if places:
+            self._write()
+        unreadable = tuple(one for one in files_of(self._path)[1:] if one.exists())
+        for one in unreadable:
+            one.unlink()
+        sync_folder(self._path.parent)
+        return ForgottenSteps(places, unreadable)
+
+    def _write(self) -> None:
+        new = self._path.with_suffix(_UNFINISHED)
         with write_own(new, 0o600) as written:
             written.write(msgspec.json.encode(_ScaleFile(self._people)))
             written.flush()
             os.fsync(written.fileno())
         new.replace(self._path)
         sync_folder(self._path.parent)
+
+
+def files_of(path: Path) -> tuple[Path, Path, Path]:
+    """Return the file and the two that may be left beside it: unfinished, and set aside."""
+    return path, path.with_suffix(_UNFINISHED), path.with_suffix(_DAMAGED)
 
 
 def read_learnt(path: Path, person: str) -> Mapping[str, StepScale]:
@@ -98,7 +134,7 @@ def _read(path: Path) -> _ScaleFile:
     except FileNotFoundError:
         return _ScaleFile()
     except (OSError, msgspec.DecodeError) as error:  # a unit must start in any case
-        aside = path.with_suffix(".damaged")
+        aside = path.with_suffix(_DAMAGED)
         logger.warning("the learnt lengths of steps cannot be read (%s), and begin anew", error)
         try:
             path.replace(aside)

@@ -43,6 +43,33 @@ def test_the_file_has_no_names(path: Path) -> None:
     assert b"Ada" not in path.read_bytes()
 
 
+def test_a_person_is_forgotten_and_the_others_are_not(path: Path) -> None:
+    for person in ("Ada", "Ben"):
+        StepScales(path, person).save({"chest": LONG, "hip": SHORT})
+    before = path.read_bytes()
+    assert StepScales(path, "Ada").forget() == (("chest", "hip"), ())
+    assert StepScales(path, "Ada").learnt == {}
+    assert StepScales(path, "Ben").learnt == {"chest": LONG, "hip": SHORT}
+    assert len(path.read_bytes()) < 0.6 * len(before)
+    assert [one.name for one in path.parent.iterdir()] == [path.name]
+
+
+def test_forgetting_whom_nothing_is_known_of_changes_nothing(path: Path) -> None:
+    StepScales(path, "Ada").save({"chest": LONG})
+    before = path.read_bytes()
+    assert StepScales(path, "Ben").forget() == ((), ())
+    assert StepScales(path, "").forget() == ((), ())
+    assert path.read_bytes() == before
+
+
+def test_forgetting_leaves_no_file_that_cannot_be_read(path: Path) -> None:
+    unfinished, damaged = path.with_suffix(".new"), path.with_suffix(".damaged")
+    path.write_bytes(b"damaged")
+    unfinished.write_bytes(b"half")
+    assert StepScales(path, "Ada").forget() == ((), (unfinished, damaged))
+    assert list(path.parent.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     "content", [b"", b"\0" * 40, b'{"people": {"x": {"chest": {"factor": -1, "std": 1}}}}']
 )
