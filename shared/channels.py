@@ -77,6 +77,12 @@ class Channel:
     def key(self, unit_id: str) -> str:
         return f"{ROOT}/{unit_id}/{self.suffix}"
 
+    @property
+    def regular_rate_hz(self) -> float:
+        """Rate of a channel that has one."""
+        assert self.rate_hz is not None
+        return self.rate_hz
+
 
 # For what every message passes: a member is looked up through its class ten times as slowly.
 UP, DOWN, STATION = Direction.UP, Direction.DOWN, Direction.STATION

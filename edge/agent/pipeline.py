@@ -13,35 +13,28 @@ import msgspec
 
 from edge.activity.body_posture import BodyPostureEstimator
 from edge.activity.mounting import MountingCheck
-from edge.agent.batteries import Batteries
-from edge.agent.decimation import Decimator, OncePerPeriod
+from edge.agent.auxiliary_samples import AuxiliarySamples
+from edge.agent.decimation import Decimator
 from edge.agent.expected_field import ExpectedField
 from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.mayday_button import MaydayButton
 from edge.agent.position_publisher import PositionPublisher
-from edge.agent.sighting_limit import SightingLimit
 from edge.agent.step_scale_by_fixes import StepScaleByFixes
-from edge.agent.temperatures import AmbientTemperature, CurrentReadings
 from edge.agent.unit_sensors import UnitSensors
 from edge.clocks.timeline import Timeline
-from edge.sample_codec.codec import gps_fix, is_sendable, sighting, whole_seconds
+from edge.sample_codec.codec import whole_seconds
 from edge.sample_codec.descriptions import described_unit
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import (
-    AmbientSample,
     ApproximatePosition,
-    BatterySample,
     ButtonPress,
-    ElectronicsSample,
     GpsSample,
-    OtherSample,
     SensorBatch,
-    SightingSample,
 )
 from edge.tracker.choice.interface import Choice, ChoosesTracker
 from edge.tracker.interface import LearnsSteps, MultiSensorTracker, StepScale, TrackBatch
 from edge.tracker.track_rows import empty_rows
-from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
+from shared.channels import DESCRIPTION, STATUS
 from shared.header_factory import HeaderFactory
 from shared.messages import (
     BatteryState,
@@ -50,7 +43,6 @@ from shared.messages import (
     Position,
     PreflightFinding,
     Status,
-    Temperature,
     UnitDescription,
     UnitEvent,
 )
@@ -108,21 +100,16 @@ class TrackerPipeline:
         self._notes = notes
         self._steps_by_fixes = StepScaleByFixes()
         self._expected_field = ExpectedField(identity.place)
-        self._status_times = Decimator(_rate_hz(STATUS))
+        self._status_times = Decimator(STATUS.regular_rate_hz)
         self._raw_uplink = raw_uplink
         self._description_times = Decimator(
-            _rate_hz(DESCRIPTION) if raw_uplink is None else _DESCRIPTION_FOR_TRACKER_HZ
+            DESCRIPTION.regular_rate_hz if raw_uplink is None else _DESCRIPTION_FOR_TRACKER_HZ
         )
-        self._gps_times = OncePerPeriod(_rate_hz(GPS))
-        self._ambient = AmbientTemperature(_rate_hz(TEMPERATURE))
-        self._electronics = CurrentReadings()
-        self._batteries = Batteries()
+        self._auxiliary = AuxiliarySamples(header_factory)
         self._battery: float | None = None
         self._mayday = MaydayButton(is_active=mayday)
-        self._has_gps = False
         self._preflight: tuple[PreflightFinding, ...] | None = None
         self._journal_pending = 0
-        self._sighting_limit = SightingLimit()
 
     def start(self) -> tuple[Message, ...]:
         """Return the unit's first messages."""
@@ -199,7 +186,9 @@ class TrackerPipeline:
         ]
         messages += self._follow_choice(batch, timeline)
         for sample in batch.others:
-            messages += self._take_other(sample, timeline)
+            if isinstance(sample, GpsSample):
+                self._steps_by_fixes.take_fix(sample)
+            messages += self._auxiliary.take(sample, timeline.to_mono_ns(sample.t_ns))
         if self._raw_uplink is not None:
             messages += self._raw_uplink.push(as_sampled, own_timeline, sensor)
         if self._mounting is not None and sensor == self._foot_sensor:
@@ -272,33 +261,6 @@ class TrackerPipeline:
         if learned is not None:
             self._tracker.set_earth_field(*learned)
 
-    def _take_other(self, sample: OtherSample, timeline: Timeline) -> list[Message]:
-        mono_ns = timeline.to_mono_ns(sample.t_ns)
-        match sample:
-            case AmbientSample():
-                return self._take_ambient(sample, mono_ns)
-            case ElectronicsSample():
-                self._electronics.push(sample.sensor, sample.t_ns, sample.temperature_degc)
-            case GpsSample():
-                self._has_gps = True
-                self._steps_by_fixes.take_fix(sample)
-                if self._gps_times.takes(sample.t_ns):
-                    return [gps_fix(self._header_factory.header(mono_ns), sample)]
-            case SightingSample():
-                return self._take_sighting(sample, mono_ns)
-            case BatterySample():
-                self._batteries.push(sample)
-        return []
-
-    def _take_ambient(self, sample: AmbientSample, mono_ns: int) -> list[Message]:
-        found = self._ambient.push(sample)
-        return [] if found is None else [Temperature(self._header_factory.header(mono_ns), *found)]
-
-    def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
-        if not (is_sendable(sample) and self._sighting_limit.takes(sample)):
-            return []
-        return [sighting(self._header_factory.header(mono_ns), sample)]
-
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
         kind = self._mayday.event_of(press)
         return [] if kind is None else [self._event(kind, mono_ns, "button")]
@@ -315,7 +277,7 @@ class TrackerPipeline:
         return messages
 
     def _status(self, t_ns: int, timeline: Timeline) -> Status:
-        battery = self._batteries.emptiest(t_ns)
+        battery = self._auxiliary.emptiest_battery(t_ns)
         self._battery = None if battery is None else battery.level
         posture, confidence = self._body.posture(t_ns)
         on_foot = self._mounting is not None
@@ -330,7 +292,7 @@ class TrackerPipeline:
             floors_climbed=self._positions.floors_climbed,
             tracker_rows_dropped=self._positions.rows_dropped,
             journal_pending=self._journal_pending,
-            electronics=self._electronics.at(t_ns),
+            electronics=self._auxiliary.electronics(t_ns),
             battery_left_s=None if battery is None else whole_seconds(battery.left_s),
             battery_state=BatteryState.UNKNOWN if battery is None else battery.state,
             battery_name="" if battery is None else battery.battery,
@@ -347,7 +309,7 @@ class TrackerPipeline:
             software_version=self._identity.software_version,
             source=self._identity.source,
             tracker=choice.tracker,
-            has_gps=self._has_gps,
+            has_gps=self._auxiliary.has_gps,
         )
         return msgspec.structs.replace(
             described, outputs=self._identity.outputs, preflight=self._preflight
@@ -355,11 +317,6 @@ class TrackerPipeline:
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:
         return UnitEvent.of(self._header_factory.header(mono_ns), kind, detail)
-
-
-def _rate_hz(channel: Channel) -> float:
-    assert channel.rate_hz is not None
-    return channel.rate_hz
 
 
 def _last_source_ns(batch: SensorBatch) -> int | None:

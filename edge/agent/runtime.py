@@ -10,46 +10,31 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterable
 from contextlib import ExitStack
-from dataclasses import dataclass
-from queue import Empty, SimpleQueue
+from queue import Empty
 from threading import Event
-from typing import Protocol
 
 import msgspec
 
-from edge.agent.link import Link
-from edge.agent.mayday_latch import MaydayLatch
-from edge.agent.outbox import Outbox
-from edge.agent.pipeline import TrackerPipeline
-from edge.agent.source_reader import SourceReader, TimedBatch
-from edge.agent.step_scale_keeper import StepScaleKeeper
-from edge.agent.wearer_notifier import WearerNotifier
-from edge.clocks.station import StationClock
+from edge.agent.agent_parts import AgentParts
+from edge.agent.source_reader import TimedBatch
 from edge.clocks.timeline import Timeline
 from edge.fault_texts import program_error
-from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.codec import batch_of
 from edge.samples import ACKNOWLEDGE, CANCEL, ButtonPress, SensorBatch
-from edge.sources.interface import Source
-from edge.storage.black_box.black_box import BlackBox
-from edge.storage.journal.journal import Journal
-from edge.storage.journal.writer import JournalWriter
 from shared.bus import ReplyHandler
 from shared.channels import COMMAND, clock_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.coded_text import coded
 from shared.errors import RecordingError, WireError
-from shared.header_factory import HeaderFactory
 from shared.messages import (
     Command,
     EventKind,
     Heartbeat,
     Message,
-    PreflightFinding,
     UnitEvent,
 )
 from shared.messages.event import FAILED
-from shared.service_manager import ServiceManager
 
 logger = logging.getLogger(__name__)
 
@@ -60,41 +45,6 @@ _CLOCK_TIMEOUT_S = 5.0
 _COMPILED_S = 3.0  # of samples, after which all of the tracker's code has run once
 _EARLY_NS = 10 * NS_PER_S  # after its start: a tracker that fails by then will fail again
 _CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without the tracker
-
-
-class SelfTest(Protocol):
-    """Check of the unit at its start, while it runs; see ``edge.preflight.start_check``."""
-
-    def start(self, mono_ns: int) -> None: ...
-
-    def push(self, batch: SensorBatch) -> None: ...
-
-    def step(self, mono_ns: int) -> tuple[PreflightFinding, ...] | None:
-        """Return new findings: faults and missing parts."""
-        ...
-
-
-@dataclass(frozen=True, slots=True)
-class AgentParts:
-    """Parts of an agent; the composition root chooses each."""
-
-    source: Source
-    reader: SourceReader
-    raw: SampleEncoder
-    pipeline: TrackerPipeline
-    wearer: WearerNotifier
-    header_factory: HeaderFactory
-    clock: StationClock
-    black_box: BlackBox
-    journal: Journal
-    journal_writer: JournalWriter
-    mayday_latch: MaydayLatch
-    steps: StepScaleKeeper
-    outbox: Outbox
-    link: Link
-    commands: SimpleQueue[bytes]  # filled by the link
-    manager: ServiceManager
-    start_check: SelfTest | None = None  # None: of an agent that has no sensors of its own
 
 
 def _logged(messages: tuple[Message, ...]) -> tuple[Message, ...]:

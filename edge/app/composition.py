@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from queue import SimpleQueue
 
+from edge.agent.agent_parts import AgentParts
 from edge.agent.command_handler import CommandHandler
 from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.link import Link, StationConnector
@@ -20,7 +21,7 @@ from edge.agent.open_commands import OpenCommands
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
-from edge.agent.runtime import Agent, AgentParts
+from edge.agent.runtime import Agent
 from edge.agent.source_reader import SourceReader
 from edge.agent.step_scale_keeper import StepScaleKeeper
 from edge.agent.wearer_notifier import WearerNotifier

@@ -21,8 +21,7 @@ class RawUplink:
     """Collector of batches until they span a period; ``finish`` gives what is left."""
 
     def __init__(self, header_factory: HeaderFactory) -> None:
-        assert IMU.rate_hz is not None
-        self._period_ns = round(NS_PER_S / IMU.rate_hz)
+        self._period_ns = round(NS_PER_S / IMU.regular_rate_hz)
         self._header_factory = header_factory
         self._pending: dict[str, list[ImuBatch]] = {}  # by sensor; none is empty
 
