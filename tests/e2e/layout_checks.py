@@ -102,6 +102,15 @@ _FIND = """
     if (isShown(one) && one.clientWidth < Math.min(smallestSentence, one.scrollWidth))
       found.push(`nearly nothing is left of ${said(one)}`);
 
+  for (const one of root.querySelectorAll(".casualties button")) {
+    const shown = [...one.children].filter((part) => part.tagName !== "svg" && isShown(part));
+    if (shown.length === 0) continue;
+    const boxes = [one, shown[0], shown.at(-1)].map((at) => at.getBoundingClientRect());
+    const [box, first, last] = boxes;
+    if (Math.abs(first.top - box.top - (box.bottom - last.bottom)) > 3)
+      found.push(`higher or lower than the middle of its row: ${said(one)}`);
+  }
+
   const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const { parentElement: one, textContent } = texts.currentNode;

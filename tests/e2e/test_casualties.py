@@ -14,6 +14,8 @@ from tests.e2e.stage import Stage
 
 SIZES = ((1920, 1080), (1366, 768), (1024, 768), (390, 844), (844, 390))
 DOWN = 5
+STAYS_PX = 2  # by which a small screen draws the bar lower without the words beside it
+MANY_DOWN = 9  # each is a name alone
 
 
 def casualties(page: Page) -> Locator:
@@ -42,6 +44,52 @@ def test_casualty_is_visible_at_any_scroll_position(
     last.click()
     expect(page.locator(".card.chosen .name")).to_have_text(name)
     expect(page.locator(".card.chosen .name")).to_be_in_viewport(ratio=1)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_each_of_many_casualties_has_the_name_in_the_middle_of_its_row(
+    stage: Stage, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    page, _ = stage.open(scenes.some_down(40, MANY_DOWN))
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    expect(casualties(page)).to_have_count(MANY_DOWN)
+    page.screenshot(path=tmp_path / f"many-{size[0]}.png")
+    assert flaws(page) == []
+
+
+# From the top of the people's part: what stands above it has its own checks.
+BOXES_ABOVE = """
+() => {
+  const top = document.querySelector(".people").getBoundingClientRect().top;
+  const pressed = ".people-bar button, .headcount button, .list-tools :is(input, select, button)";
+  return [...document.querySelectorAll(pressed)]
+    .filter((one) => one.checkVisibility())
+    .map((one) => [one.textContent.replace(/\\d+/, ""), one.getBoundingClientRect().top - top]);
+}
+"""
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_first_casualty_moves_nothing_that_is_pressed_above_the_list(
+    stage: Stage, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    page, station = stage.open(scenes.some_down(40, 0))
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    if (find := page.locator(".find")).is_visible():
+        find.click()
+    page.wait_for_timeout(500)
+    page.screenshot(path=tmp_path / f"before-{size[0]}.png")
+    before = page.evaluate(BOXES_ABOVE)
+    assert len(before) > 8
+    hurt = scenes.some_down(40, 1)
+    station.change(alarms=hurt.alarms, units=hurt.units[:1])
+    expect(casualties(page)).to_have_count(1)
+    page.screenshot(path=tmp_path / f"first-{size[0]}.png")
+    after = page.evaluate(BOXES_ABOVE)
+    assert [name for name, _ in after] == [name for name, _ in before]
+    for (name, top), (_, was) in zip(after, before, strict=True):
+        assert abs(top - was) <= STAYS_PX, name
+    assert flaws(page) == []
 
 
 def test_casualty_shows_its_cause_and_place(stage: Stage) -> None:

@@ -13,7 +13,8 @@ import { useGuardedPress } from "./useGuardedPress";
 /** Above this number each has a line with room for the name only. */
 const MANY = 6;
 
-/** Casualties above the scrolled list, each with cause and position. */
+/** Casualties above the scrolled list, each with cause and position; below all that is pressed there, which the
+ * first of them must not move. */
 export function Casualties({ unitIds, picture }: { unitIds: readonly string[]; picture: Picture }) {
   if (unitIds.length === 0) return null;
   const many = unitIds.length > MANY ? "many" : "";

@@ -75,9 +75,6 @@ export function People({ picture }: { picture: Picture }) {
             {t("people_list.find")}
           </button>
         </div>
-        <ErrorBoundary what={t("people_list.down")}>
-          <Casualties unitIds={down.value} picture={picture} />
-        </ErrorBoundary>
         <ErrorBoundary what={t("people_list.headcount")}>
           <Headcount counts={counts} />
         </ErrorBoundary>
@@ -85,6 +82,9 @@ export function People({ picture }: { picture: Picture }) {
           <ListTools />
         </ErrorBoundary>
         <LeftOut groups={shown} all={places.value.length} />
+        <ErrorBoundary what={t("people_list.down")}>
+          <Casualties unitIds={down.value} picture={picture} />
+        </ErrorBoundary>
       </div>
       <div class="people-list" ref={list}>
         {places.value.length === 0 ? (
