@@ -25,7 +25,7 @@ def forget_steps(
         raise UserError("--person is empty; give the person as wearer.person in the settings")
     file = folder / STEP_SCALES
     if not any(one.exists() for one in files_of(file)):  # and no folder is made by a wrong name
-        raise UserError(f"{folder} has no {STEP_SCALES}: nothing is kept there of anybody's steps")
+        raise UserError(f"{folder} has no {STEP_SCALES}: no learnt steps are kept there")
     with closing(FolderLock(folder, "agent", "stop it, and give the command again")):
         try:
             forgotten = StepScales(file, person).forget()

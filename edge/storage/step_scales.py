@@ -44,7 +44,7 @@ class ForgottenSteps(NamedTuple):
     """Scales that were deleted."""
 
     places: tuple[str, ...]  # of the sensor
-    unreadable: tuple[Path, ...]  # files of whoever
+    unreadable: tuple[Path, ...]  # files of unknown people
 
 
 class StepScales:
@@ -74,7 +74,7 @@ class StepScales:
         """Delete the scales of this person; without a person there is nothing to delete.
 
         Files that were left unfinished, or set aside because they could not be read, are deleted
-        whole, as nobody can tell whose scales they have.  Raises OSError.
+        whole, as it is not known whose scales they have.  Raises OSError.
         """
         if not self._person:
             return ForgottenSteps((), ())

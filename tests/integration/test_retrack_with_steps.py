@@ -87,6 +87,6 @@ def test_a_person_that_cannot_be_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_tracker_that_does_not_count_steps_says_so(boot: Path, tmp_path: Path) -> None:
+def test_tracker_that_counts_no_steps_is_reported(boot: Path, tmp_path: Path) -> None:
     done = retracked(boot, tmp_path / "out", "--person", "Ada", "--tracker", "eskf")
     assert done.stderr.endswith("tracker eskf takes no path from lengths of steps\n")

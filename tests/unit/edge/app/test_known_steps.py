@@ -101,7 +101,7 @@ def test_steps_at_another_place_of_the_body_are_not_used() -> None:
         ("two_feet", {"left": "left_foot", "right": "right_foot"}),
     ],
 )
-def test_a_tracker_without_lengths_of_steps_says_so(tracker: str, places: dict[str, str]) -> None:
+def test_tracker_without_lengths_of_steps_is_reported(tracker: str, places: dict[str, str]) -> None:
     known = {"foot": LEARNT, "waist": LEARNT}
     assert used(tracker, places, "Ada", known) == (
         f"tracker {tracker} takes no path from lengths of steps"

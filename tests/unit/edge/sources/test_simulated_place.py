@@ -52,7 +52,7 @@ def test_motion_is_the_scenarios_where_no_place_is_set(tmp_path: Path) -> None:
     assert unit(own, "chest") == of_chest
 
 
-def test_source_that_says_another_place_is_simulated_and_reported(
+def test_contradicting_place_in_the_source_is_simulated_and_reported(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     with caplog.at_level(logging.WARNING):
@@ -62,12 +62,12 @@ def test_source_that_says_another_place_is_simulated_and_reported(
     assert "one at chest" in record.getMessage()
 
 
-def test_source_that_says_the_same_place_is_not_reported(caplog: pytest.LogCaptureFixture) -> None:
+def test_same_place_in_the_source_is_not_reported(caplog: pytest.LogCaptureFixture) -> None:
     assert unit(f"simulated:{WALK}&worn_on=waist", "lower_back") == at("waist")
     assert not caplog.records
 
 
-def test_place_without_a_simulated_motion_is_refused_unless_the_source_says_one() -> None:
+def test_place_without_a_simulated_motion_is_refused_unless_the_source_has_one() -> None:
     with pytest.raises(ConfigError, match=r"can be simulated at hand.*worn_on=chest"):
         unit(f"simulated:{WALK}", "hand")
     in_hand = SensorConfig("hand", f"simulated:{WALK}")
